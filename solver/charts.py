@@ -1,0 +1,112 @@
+"""The two closed-form charts of the self-motion curve (METHODS, section 3; Lin 2022, Zhao 2025).
+
+For an attitude C the solutions of a four-axis rig form curves. A chart gives the other three angles where one is
+known: the base chart from d1 (folds where cos d3 = 0), the inner chart from d4 (folds where sin d2 = 0). The formulae
+are the vertical rig's (y, z, y, x). The horizontal rig (z, y, z, x) is the same seen through a quarter turn about x,
+which takes y to z and z to -y, so that its d2 counts the other way.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver._jit import kernel
+
+Array = NDArray[np.float64]
+TURN = 2.0 * math.pi
+
+
+@kernel
+def nearest(angle: float, reference: float) -> float:
+    """The angle, plus whole turns, nearest to `reference` [rad]."""
+    return angle + TURN * np.rint((reference - angle) / TURN)
+
+
+@kernel
+def to_vertical(C: Array, out: Array) -> None:
+    """out <- the attitude that the vertical rig sees for the horizontal rig's C. C, out (3, 3)."""
+    out[0, 0] = C[0, 0]
+    out[0, 1] = C[0, 2]
+    out[0, 2] = -C[0, 1]
+    out[1, 0] = C[2, 0]
+    out[1, 1] = C[2, 2]
+    out[1, 2] = -C[2, 1]
+    out[2, 0] = -C[1, 0]
+    out[2, 1] = -C[1, 2]
+    out[2, 2] = C[1, 1]
+
+
+@kernel
+def base_chart(horizontal: bool, C: Array, d1: float, branch: float, d: Array) -> None:
+    """d <- the solution with base angle d1 and sign(cos d3) = branch (+1 or -1), angles in (-pi, pi] but d1 itself.
+
+    C (3, 3) body from reference, d (4,) [rad].
+    """
+    V = C
+    if horizontal:
+        V = np.empty((3, 3))
+        to_vertical(C, V)
+    c = math.cos(d1)
+    s = math.sin(d1)
+    # M = V Ry(d1)^T
+    m00 = V[0, 0] * c - V[0, 2] * s
+    m01 = V[0, 1]
+    m02 = V[0, 0] * s + V[0, 2] * c
+    m12 = V[1, 0] * s + V[1, 2] * c
+    m22 = V[2, 0] * s + V[2, 2] * c
+    d[0] = d1
+    d[2] = math.atan2(-m02, branch * math.hypot(m00, m01))
+    d[1] = math.atan2(branch * m01, branch * m00)
+    d[3] = math.atan2(branch * m12, branch * m22)
+    if horizontal:
+        d[1] = -d[1]
+
+
+@kernel
+def inner_chart(horizontal: bool, C: Array, d4: float, branch: float, d: Array) -> None:
+    """d <- the solution with inner angle d4 and sign(sin d2) = branch (+1 or -1, of the vertical rig's d2).
+
+    C (3, 3) body from reference, d (4,) [rad]. For the horizontal rig the branch is that of -d2.
+    """
+    V = C
+    if horizontal:
+        V = np.empty((3, 3))
+        to_vertical(C, V)
+    c = math.cos(d4)
+    s = math.sin(d4)
+    # N = Rx(d4)^T V
+    n10 = c * V[1, 0] - s * V[2, 0]
+    n11 = c * V[1, 1] - s * V[2, 1]
+    n12 = c * V[1, 2] - s * V[2, 2]
+    n01 = V[0, 1]
+    n21 = s * V[1, 1] + c * V[2, 1]
+    d[3] = d4
+    d[1] = math.atan2(branch * math.hypot(n10, n12), n11)
+    d[0] = math.atan2(branch * n12, -branch * n10)
+    d[2] = math.atan2(branch * n21, branch * n01)
+    if horizontal:
+        d[1] = -d[1]
+
+
+@kernel
+def project(horizontal: bool, C: Array, near: Array, d: Array) -> None:
+    """d <- an exact solution for C next to `near`, in the chart that is farther from its fold.
+
+    Keeps d1 (base chart) or d4 (inner chart) of `near` and its branch; the others take the turn nearest to `near`.
+    near, d (4,) [rad]; they may be the same array.
+    """
+    cos_d3 = math.cos(near[2])
+    sin_d2 = math.sin(near[1])
+    n0, n1, n2, n3 = near[0], near[1], near[2], near[3]
+    if abs(cos_d3) >= abs(sin_d2):
+        base_chart(horizontal, C, n0, 1.0 if cos_d3 >= 0.0 else -1.0, d)
+    else:
+        upward = sin_d2 > 0.0
+        if horizontal:
+            upward = not upward
+        inner_chart(horizontal, C, n3, 1.0 if upward else -1.0, d)
+    d[0] = nearest(d[0], n0)
+    d[1] = nearest(d[1], n1)
+    d[2] = nearest(d[2], n2)
+    d[3] = nearest(d[3], n3)

@@ -1,0 +1,135 @@
+"""Forward kinematics of the rigs: payload attitude, Jacobian, null vector, singularity measure (METHODS, section 2).
+
+`axes` is `Rig.axes`; angles are d1..d4 [rad], base first. Rotations are passive: they carry vector components from
+the outer frame into the inner one.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver._jit import kernel
+
+Array = NDArray[np.float64]
+
+
+@kernel
+def turn(axis: int, angle: float, M: Array) -> None:
+    """M <- R_axis(angle) M, in place; M (3, k). An absent axis leaves M as it is."""
+    if axis < 0:
+        return
+    c = math.cos(angle)
+    s = math.sin(angle)
+    i = (axis + 1) % 3
+    j = (axis + 2) % 3
+    for k in range(M.shape[1]):
+        a = M[i, k]
+        b = M[j, k]
+        M[i, k] = c * a + s * b
+        M[j, k] = c * b - s * a
+
+
+@kernel
+def payload_attitude(axes: NDArray[np.int64], d: Array, F: Array) -> None:
+    """F <- R4(d4) R3(d3) R2(d2) R1(d1), body from reference. d (4,) [rad], F (3, 3)."""
+    for i in range(3):
+        for j in range(3):
+            F[i, j] = 1.0 if i == j else 0.0
+    for i in range(4):
+        turn(axes[i], d[i], F)
+
+
+@kernel
+def jacobian(axes: NDArray[np.int64], d: Array, J: Array) -> None:
+    """J <- the body rate per frame rate, w = J d'; column i is R4..R(i+1) e_i. d (4,) [rad], J (3, 4)."""
+    for i in range(4):
+        for r in range(3):
+            J[r, i] = 0.0
+        if axes[i] < 0:
+            continue
+        J[axes[i], i] = 1.0
+        for k in range(i + 1, 4):
+            turn(axes[k], d[k], J[:, i : i + 1])
+
+
+@kernel
+def null_vector(J: Array, n: Array) -> float:
+    """n <- the unit vector with J n = 0, from the signed 3x3 minors of J; returns the minors' norm.
+
+    The norm is sqrt(det(J J^T)) (Cauchy-Binet); where it is zero, n is left zero. J (3, 4), n (4,).
+    """
+    total = 0.0
+    for i in range(4):
+        a, b, c = (1, 2, 3) if i == 0 else (0, 2, 3) if i == 1 else (0, 1, 3) if i == 2 else (0, 1, 2)
+        minor = (
+            J[0, a] * (J[1, b] * J[2, c] - J[1, c] * J[2, b])
+            - J[0, b] * (J[1, a] * J[2, c] - J[1, c] * J[2, a])
+            + J[0, c] * (J[1, a] * J[2, b] - J[1, b] * J[2, a])
+        )
+        n[i] = minor if i % 2 == 0 else -minor
+        total += minor * minor
+    norm = math.sqrt(total)
+    if norm > 0.0:
+        for i in range(4):
+            n[i] /= norm
+    return norm
+
+
+@kernel
+def singularity_measure(d: Array) -> float:
+    """sin^2 d2 + cos^2 d3 of a four-axis rig: zero only at its singularity (METHODS, section 3). d (4,) [rad]."""
+    s = math.sin(d[1])
+    c = math.cos(d[2])
+    return s * s + c * c
+
+
+@kernel
+def rotation_error(F: Array, C: Array, e: Array) -> float:
+    """e <- the rotation vector of F C^T (body axes) [rad]; returns its length, the geodesic error [rad].
+
+    Precise near zero: the length is atan2(|axis part|, cosine part). F, C (3, 3), e (3,). Near a half turn, where the
+    axis part vanishes, the axis is taken from the symmetric part.
+    """
+    E = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            E[i, j] = F[i, 0] * C[j, 0] + F[i, 1] * C[j, 1] + F[i, 2] * C[j, 2]
+    # E is passive: E = exp(-[e]x), so the axis part has the opposite sign of an active rotation's.
+    e[0] = 0.5 * (E[1, 2] - E[2, 1])
+    e[1] = 0.5 * (E[2, 0] - E[0, 2])
+    e[2] = 0.5 * (E[0, 1] - E[1, 0])
+    sine = math.sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2])
+    cosine = 0.5 * (E[0, 0] + E[1, 1] + E[2, 2] - 1.0)
+    angle = math.atan2(sine, cosine)
+    if sine > 1e-9:
+        for i in range(3):
+            e[i] *= angle / sine
+    elif cosine < 0.0:
+        k = 0
+        for i in range(1, 3):
+            if E[i, i] > E[k, k]:
+                k = i
+        norm = math.sqrt(max(0.0, 2.0 * (1.0 + E[k, k])))
+        for i in range(3):
+            e[i] = angle * (E[i, k] + (1.0 if i == k else 0.0)) / norm
+    return angle
+
+
+@kernel
+def matrix_error(F: Array, C: Array) -> float:
+    """The largest absolute entry of F - C, the papers' figure. F, C (3, 3)."""
+    worst = 0.0
+    for i in range(3):
+        for j in range(3):
+            gap = abs(F[i, j] - C[i, j])
+            if not gap <= worst:
+                worst = gap
+    return worst
+
+
+@kernel
+def payload_attitudes(axes: NDArray[np.int64], d: Array, F: Array) -> None:
+    """`payload_attitude` of every row. d (n, 4) [rad], F (n, 3, 3)."""
+    for k in range(d.shape[0]):
+        payload_attitude(axes, d[k], F[k])

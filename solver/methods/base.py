@@ -1,0 +1,45 @@
+"""The one interface of the step methods.
+
+A step method sees one sample at a time. `StepMethod.stepper` builds the state of one flight in progress; its `block`
+advances over m samples (m = 1 for live use, more for a file), so files, streams and timings share one code path.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.rig import Rig
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Block:
+    """Results of m samples: angles (m, 4) [rad], limited (m,) codes, iterations (m,)."""
+
+    angles: Array
+    limited: NDArray[np.int16]
+    iterations: NDArray[np.int32]
+
+
+class Stepper(Protocol):
+    """A flight in progress: keeps pose, rate and multipliers from block to block."""
+
+    def block(self, time: Array, attitude: Array) -> Block:
+        """Advance over samples: time (m,) [s] strictly increasing over calls, attitude (m, 3, 3) body from reference."""
+        ...
+
+
+@dataclass(frozen=True)
+class StepMethod:
+    """A method of the literature, as the registry knows it."""
+
+    name: str
+    source: str  # paper, section, equation
+    claims_limits: bool
+    options: type[Any]  # a frozen dataclass with defaults
+    # (rig, options, start pose (4,) [rad] or None for the exact one nearest home, first attitude (3, 3)) -> Stepper
+    stepper: Callable[[Rig, Any, Array | None, Array], Stepper]
