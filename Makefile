@@ -1,0 +1,16 @@
+.PHONY: demo test format clean
+# Everything a fresh machine needs: python3 and make.
+
+demo: ## installs, serves, a real flight is flying; the first line is the address
+	@tools/demo
+
+test: ## installs what the tests need and runs every gate
+	@tools/setup dev
+	@tools/gates $(GATES)
+
+format: ## puts the Python sources in order
+	@.venv/bin/ruff format . && .venv/bin/ruff check --fix .
+
+clean: ## removes what set-up and tests made
+	rm -rf .venv .make build dist server/console web/node_modules .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find solver server -name __pycache__ -prune -exec rm -rf {} +
