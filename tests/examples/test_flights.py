@@ -1,0 +1,96 @@
+"""The flights of examples/flights/: flown as their README says, and flown again to the same bytes."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from tools.fly_flights import FLIGHTS, RATE_HZ, fly, table
+
+# JSBSim hands its matrices over as numpy.matrix, which NumPy frowns on.
+pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "examples" / "flights"
+
+
+def read(name: str) -> tuple[NDArray[np.float64], Rotation]:
+    """Time (n,) [s] and the active body-from-NED rotation, read with nothing of the project's."""
+    path = FOLDER / f"{name}.csv"
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
+    header = path.read_text().splitlines()[0]
+    if header == "time_s,qw,qx,qy,qz":
+        return rows[:, 0], Rotation.from_quat(rows[:, 1:], scalar_first=True)
+    return rows[:, 0], Rotation.from_euler("ZYX", rows[:, 1:], degrees=True)
+
+
+def turned_deg(time: NDArray[np.float64], body: Rotation) -> NDArray[np.float64]:
+    """The body rate p, q, r integrated over the flight (3,) [deg]."""
+    return np.degrees((body[:-1].inv() * body[1:]).as_rotvec().sum(axis=0))
+
+
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_files_are_uniform_gentle_and_small(name: str) -> None:
+    time, body = read(name)
+    assert (FOLDER / f"{name}.csv").stat().st_size < 1_500_000
+    np.testing.assert_allclose(np.diff(time), 1.0 / RATE_HZ, atol=1e-9)
+    assert 10.0 <= time[-1] <= 30.0
+    rate = np.degrees((body[:-1].inv() * body[1:]).magnitude()) * RATE_HZ
+    assert rate[0] < 0.01, "begins in trimmed flight, at rest"
+    assert rate.max() < 90.0, "an aircraft's rates, and no jump between rows"
+
+
+def test_loop_pitches_through_both_verticals_and_a_full_turn() -> None:
+    time, body = read("loop")
+    nose, wing, belly = (body.apply(axis) for axis in np.eye(3))
+    p, q, r = turned_deg(time, body)
+    assert q == pytest.approx(360.0, abs=5.0)
+    assert abs(p) < 5.0
+    assert abs(r) < 5.0
+    up, over, down = np.argmin(nose[:, 2]), np.argmin(belly[:, 2]), np.argmax(nose[:, 2])
+    assert nose[up, 2] < -0.998
+    assert belly[over, 2] < -0.998
+    assert nose[down, 2] > 0.998
+    assert up < over < down
+    assert np.abs(wing[:, 2]).max() < 0.06, "the wings stay near the horizon"
+    assert nose[-1] @ nose[0] > 0.99
+
+
+def test_slow_roll_banks_through_a_full_turn_on_one_heading() -> None:
+    _, body = read("slow_roll")
+    heading, pitch, bank = np.unwrap(body.as_euler("ZYX"), axis=0).T
+    assert np.degrees(bank[-1] - bank[0]) == pytest.approx(-360.0, abs=2.0)
+    assert np.degrees(pitch).max() < 15.0
+    assert np.degrees(np.abs(heading - heading[0])).max() < 10.0
+
+
+def test_split_s_goes_inverted_then_down_and_out_the_other_way() -> None:
+    _, body = read("split_s")
+    nose, _, belly = (body.apply(axis) for axis in np.eye(3))
+    down = int(np.argmax(nose[:, 2]))
+    assert belly[: down // 2, 2].min() < -0.98, "inverted before the pull"
+    assert nose[down, 2] > 0.99
+    assert belly[-1, 2] > 0.99
+    assert nose[-1] @ nose[0] < -0.98
+
+
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_flown_again_writes_the_same_bytes(name: str) -> None:
+    flight = FLIGHTS[name]
+    once = table(flight, *fly(flight, seconds=3.0))
+    assert once == table(flight, *fly(flight, seconds=3.0))
+    # The committed file may come from another processor, whose last digits differ; 3 s do not let that grow.
+    with (FOLDER / f"{name}.csv").open() as file:
+        committed = list(itertools.islice(file, 1 + 3 * RATE_HZ + 1))
+    again = once.splitlines()
+    assert again[0] == committed[0].strip()
+    np.testing.assert_allclose(
+        np.loadtxt(again[1:], delimiter=","), np.loadtxt(committed[1:], delimiter=","), rtol=0.0, atol=1e-6
+    )
+
+
+def test_demo_flight_is_the_example_loop() -> None:
+    assert (ROOT / "server/demo_flights/loop.csv").read_bytes() == (FOLDER / "loop.csv").read_bytes()
