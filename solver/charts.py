@@ -20,21 +20,7 @@ TURN = 2.0 * math.pi
 @kernel
 def nearest(angle: float, reference: float) -> float:
     """The angle, plus whole turns, nearest to `reference` [rad]."""
-    return angle + TURN * np.rint((reference - angle) / TURN)
-
-
-@kernel
-def to_vertical(C: Array, out: Array) -> None:
-    """out <- the attitude that the vertical rig sees for the horizontal rig's C. C, out (3, 3)."""
-    out[0, 0] = C[0, 0]
-    out[0, 1] = C[0, 2]
-    out[0, 2] = -C[0, 1]
-    out[1, 0] = C[2, 0]
-    out[1, 1] = C[2, 2]
-    out[1, 2] = -C[2, 1]
-    out[2, 0] = -C[1, 0]
-    out[2, 1] = -C[1, 2]
-    out[2, 2] = C[1, 1]
+    return angle + TURN * float(np.rint((reference - angle) / TURN))
 
 
 @kernel
@@ -43,18 +29,22 @@ def base_chart(horizontal: bool, C: Array, d1: float, branch: float, d: Array) -
 
     C (3, 3) body from reference, d (4,) [rad].
     """
-    V = C
-    if horizontal:
-        V = np.empty((3, 3))
-        to_vertical(C, V)
     c = math.cos(d1)
     s = math.sin(d1)
-    # M = V Ry(d1)^T
-    m00 = V[0, 0] * c - V[0, 2] * s
-    m01 = V[0, 1]
-    m02 = V[0, 0] * s + V[0, 2] * c
-    m12 = V[1, 0] * s + V[1, 2] * c
-    m22 = V[2, 0] * s + V[2, 2] * c
+    # M = V Ry(d1)^T, V the attitude as the vertical rig sees it: rows and columns (x, z, -y) of the horizontal one's.
+    if horizontal:
+        v00, v01, v02 = C[0, 0], C[0, 2], -C[0, 1]
+        v10, v12 = C[2, 0], -C[2, 1]
+        v20, v22 = -C[1, 0], C[1, 1]
+    else:
+        v00, v01, v02 = C[0, 0], C[0, 1], C[0, 2]
+        v10, v12 = C[1, 0], C[1, 2]
+        v20, v22 = C[2, 0], C[2, 2]
+    m00 = v00 * c - v02 * s
+    m01 = v01
+    m02 = v00 * s + v02 * c
+    m12 = v10 * s + v12 * c
+    m22 = v20 * s + v22 * c
     d[0] = d1
     d[2] = math.atan2(-m02, branch * math.hypot(m00, m01))
     d[1] = math.atan2(branch * m01, branch * m00)
@@ -69,18 +59,22 @@ def inner_chart(horizontal: bool, C: Array, d4: float, branch: float, d: Array) 
 
     C (3, 3) body from reference, d (4,) [rad]. For the horizontal rig the branch is that of -d2.
     """
-    V = C
-    if horizontal:
-        V = np.empty((3, 3))
-        to_vertical(C, V)
     c = math.cos(d4)
     s = math.sin(d4)
-    # N = Rx(d4)^T V
-    n10 = c * V[1, 0] - s * V[2, 0]
-    n11 = c * V[1, 1] - s * V[2, 1]
-    n12 = c * V[1, 2] - s * V[2, 2]
-    n01 = V[0, 1]
-    n21 = s * V[1, 1] + c * V[2, 1]
+    # N = Rx(d4)^T V, V as in the base chart.
+    if horizontal:
+        v01 = C[0, 2]
+        v10, v11, v12 = C[2, 0], C[2, 2], -C[2, 1]
+        v20, v21, v22 = -C[1, 0], -C[1, 2], C[1, 1]
+    else:
+        v01 = C[0, 1]
+        v10, v11, v12 = C[1, 0], C[1, 1], C[1, 2]
+        v20, v21, v22 = C[2, 0], C[2, 1], C[2, 2]
+    n10 = c * v10 - s * v20
+    n11 = c * v11 - s * v21
+    n12 = c * v12 - s * v22
+    n01 = v01
+    n21 = s * v11 + c * v21
     d[3] = d4
     d[1] = math.atan2(branch * math.hypot(n10, n12), n11)
     d[0] = math.atan2(branch * n12, -branch * n10)

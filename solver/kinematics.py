@@ -91,28 +91,37 @@ def rotation_error(F: Array, C: Array, e: Array) -> float:
     Precise near zero: the length is atan2(|axis part|, cosine part). F, C (3, 3), e (3,). Near a half turn, where the
     axis part vanishes, the axis is taken from the symmetric part.
     """
-    E = np.empty((3, 3))
-    for i in range(3):
-        for j in range(3):
-            E[i, j] = F[i, 0] * C[j, 0] + F[i, 1] * C[j, 1] + F[i, 2] * C[j, 2]
+    # E = F C^T, without a buffer: this runs in the inner loop.
+    e00 = F[0, 0] * C[0, 0] + F[0, 1] * C[0, 1] + F[0, 2] * C[0, 2]
+    e01 = F[0, 0] * C[1, 0] + F[0, 1] * C[1, 1] + F[0, 2] * C[1, 2]
+    e02 = F[0, 0] * C[2, 0] + F[0, 1] * C[2, 1] + F[0, 2] * C[2, 2]
+    e10 = F[1, 0] * C[0, 0] + F[1, 1] * C[0, 1] + F[1, 2] * C[0, 2]
+    e11 = F[1, 0] * C[1, 0] + F[1, 1] * C[1, 1] + F[1, 2] * C[1, 2]
+    e12 = F[1, 0] * C[2, 0] + F[1, 1] * C[2, 1] + F[1, 2] * C[2, 2]
+    e20 = F[2, 0] * C[0, 0] + F[2, 1] * C[0, 1] + F[2, 2] * C[0, 2]
+    e21 = F[2, 0] * C[1, 0] + F[2, 1] * C[1, 1] + F[2, 2] * C[1, 2]
+    e22 = F[2, 0] * C[2, 0] + F[2, 1] * C[2, 1] + F[2, 2] * C[2, 2]
     # E is passive: E = exp(-[e]x), so the axis part has the opposite sign of an active rotation's.
-    e[0] = 0.5 * (E[1, 2] - E[2, 1])
-    e[1] = 0.5 * (E[2, 0] - E[0, 2])
-    e[2] = 0.5 * (E[0, 1] - E[1, 0])
+    e[0] = 0.5 * (e12 - e21)
+    e[1] = 0.5 * (e20 - e02)
+    e[2] = 0.5 * (e01 - e10)
     sine = math.sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2])
-    cosine = 0.5 * (E[0, 0] + E[1, 1] + E[2, 2] - 1.0)
+    cosine = 0.5 * (e00 + e11 + e22 - 1.0)
     angle = math.atan2(sine, cosine)
     if sine > 1e-9:
         for i in range(3):
             e[i] *= angle / sine
     elif cosine < 0.0:
-        k = 0
-        for i in range(1, 3):
-            if E[i, i] > E[k, k]:
-                k = i
-        norm = math.sqrt(max(0.0, 2.0 * (1.0 + E[k, k])))
+        # The column of (E + 1) / 2 = a a^T with the largest diagonal gives the axis a.
+        if e00 >= e11 and e00 >= e22:
+            e[0], e[1], e[2] = e00 + 1.0, e10, e20
+        elif e11 >= e22:
+            e[0], e[1], e[2] = e01, e11 + 1.0, e21
+        else:
+            e[0], e[1], e[2] = e02, e12, e22 + 1.0
+        norm = math.sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2])
         for i in range(3):
-            e[i] = angle * (E[i, k] + (1.0 if i == k else 0.0)) / norm
+            e[i] *= angle / norm
     return angle
 
 

@@ -1,0 +1,157 @@
+"""`exact`: the quadratic step in closed form, put on the exact solution curve (METHODS, sections 3 and 4)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver._jit import kernel
+from solver.errors import MethodError
+from solver.kinematics import jacobian, null_vector
+from solver.limits import WEIGHT, limit_table
+from solver.methods.base import Block, StepMethod
+from solver.rig import Rig
+from solver.solution import EXACT
+from solver.start import start_pose
+from solver.step import quadratic_step
+from solver.tracking import (
+    CLOCK,
+    CODE,
+    FRESH,
+    GUESS,
+    HI,
+    LO,
+    NULL,
+    PHASE,
+    POSE,
+    ROWS,
+    TOLERANCE,
+    WISH,
+    advance,
+    give_way,
+    goal,
+    new_state,
+    prepare,
+    settle,
+    wish,
+)
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ExactOptions:
+    """What is left to choose. Raises `MethodError` where a gain is negative or not a number.
+
+    avoidance: how fast the frames leave the singularity of their own, along the self-motion [rad/s].
+    homing: how fast they return home [1/s]; 0 is the minimum-norm step of the literature.
+    recovery: share of the smallest frame acceleration that brakes the return to the attitude after a limited sample.
+    """
+
+    avoidance: float = 0.0
+    homing: float = 0.0
+    recovery: float = 0.5
+
+    def __post_init__(self) -> None:
+        for name in ("avoidance", "homing"):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected a number, 0 or more")
+        if not 0.0 < self.recovery <= 1.0:
+            raise MethodError(f"option recovery = {self.recovery!r}: expected a number in (0, 1]")
+
+
+@kernel
+def exact_block(
+    horizontal: bool,
+    axes: NDArray[np.int64],
+    table: Array,
+    gains: Array,
+    time: Array,
+    attitude: Array,
+    state: Array,
+    angles: Array,
+    limited: NDArray[np.int16],
+    iterations: NDArray[np.int32],
+) -> None:
+    """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
+
+    gains: avoidance, homing, recovery.
+    """
+    work = np.empty((ROWS, 4))
+    J = np.empty((3, 4))
+    F = np.empty((3, 3))
+    G = np.empty((3, 3))
+    A = np.empty((4, 5))
+    e = np.empty(3)
+    lo_code = np.empty(4, np.int16)
+    hi_code = np.empty(4, np.int16)
+    d = state[0:4]
+    for k in range(time.shape[0]):
+        C = attitude[k]
+        if state[PHASE] == FRESH:
+            code = int(state[CODE])
+            iterations[k] = 0
+            work[POSE] = d
+        else:
+            h = time[k] - state[CLOCK]
+            prepare(table, state, h, work, lo_code, hi_code)
+            wish(table, d, h, gains[0], gains[1], work[WISH])
+            on_target = goal(table, axes, state, C, h, gains[2], F, G, e)
+            jacobian(axes, d, J)
+            volume = null_vector(J, work[NULL])
+            quadratic_step(
+                J, work[NULL], volume, table[WEIGHT], d, work[WISH], e, work[LO], work[HI], work[TOLERANCE], work[GUESS]
+            )
+            iterations[k] = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
+            code = EXACT
+            if iterations[k] == 0:
+                code = give_way(axes, table, d, G, J, e, F, work, A, lo_code, hi_code)
+                iterations[k] = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
+                if iterations[k] == 0:
+                    work[POSE] = work[GUESS]
+            if iterations[k] > 0:
+                code = EXACT if on_target else int(state[CODE])
+            elif code == EXACT:
+                code = int(state[CODE])
+        angles[k] = work[POSE]
+        limited[k] = code
+        advance(state, time[k], angles[k], code, C)
+
+
+class ExactStepper:
+    """One flight in progress with `exact`."""
+
+    def __init__(self, rig: Rig, options: ExactOptions, start: Array | None, attitude: Array) -> None:
+        if not rig.geometry.redundant:
+            raise MethodError(f"exact needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
+        self._rig = rig
+        self._table = limit_table(rig)
+        self._gains = np.array([options.avoidance, options.homing, options.recovery])
+        self._state = new_state(*start_pose(rig, attitude, start), attitude)
+
+    def block(self, time: Array, attitude: Array) -> Block:
+        """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
+        m = len(time)
+        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
+        exact_block(
+            self._rig.geometry.horizontal,
+            self._rig.axes,
+            self._table,
+            self._gains,
+            time,
+            attitude,
+            self._state,
+            out.angles,
+            out.limited,
+            out.iterations,
+        )
+        return out
+
+
+METHOD = StepMethod(
+    name="exact",
+    source="the closed-form null-space step with the exact charts (Lin 2022; Zhao 2025, second optimisation)",
+    claims_limits=True,
+    options=ExactOptions,
+    stepper=ExactStepper,
+)

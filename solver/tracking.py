@@ -1,0 +1,229 @@
+"""What `exact` and `alm` share: the state of a flight in progress, the exact pose inside the box, and recovery.
+
+A step method proposes a pose from the linearised programme; `settle` puts it on the self-motion curve of the target
+and slides it along the curve until it lies inside the box, so that the sample is exact and inside every limit, or
+says that it cannot; `give_way` then makes the attitude error as small as the limits allow.
+
+Recovery. A sample that was limited leaves an error behind. Closing it at once would arrive with a closing rate that no
+frame can brake, overshoot and swing on its acceleration limits. So the error is closed like a frame approaches its
+stop: along the rate from which a set share of the smallest frame acceleration still brakes (`limits.approach_rate`).
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver._jit import kernel
+from solver.charts import project
+from solver.kinematics import jacobian, null_vector, payload_attitude, rotation_error
+from solver.limits import ACCELERATION, HOME, WEIGHT, Codes, approach_rate, inside, limit_box, tolerances
+from solver.solution import EXACT
+from solver.step import box_least_squares, clamp, null_interval, squared_damping
+
+Array = NDArray[np.float64]
+
+# State of a flight in progress, one array: d (4), v (4), then
+PAST, CLOCK, PHASE, CODE = 8, 9, 10, 11  # interval just past [s], time [s], phase, code of the last sample
+TARGET = 12  # the last sample's attitude (9)
+STATE = 21
+FRESH, PLACED, MOVING = 0.0, 1.0, 2.0  # no sample yet; a pose but no rate; both
+
+# Rows of the work array of one sample, (ROWS, 4)
+LO, HI, TOLERANCE, WISH, GUESS, POSE, NULL, STEP, DAMPING = range(9)
+ROWS = 9
+
+SLIDES = 8  # along the curve to the box; two or three do it, unless there is no way
+ALONG = 1e-2  # [rad] a slide this long is worth another: what it leaves is of third order
+SHIFT = 1e-7  # damping of the least squares relative to the Jacobian's squares: picks one of many minima
+
+
+@kernel
+def wish(table: Array, d: Array, h: float, avoidance: float, homing: float, out: Array) -> None:
+    """out <- the increment the frames would make of their own [rad]: away from the singularity, toward home.
+
+    avoidance [rad/s], homing [1/s]. The first is the gradient of m / (m + 0.1) times it, m = sin^2 d2 + cos^2 d3.
+    """
+    for i in range(4):
+        out[i] = -homing * h * (d[i] - table[HOME, i]) if homing > 0.0 else 0.0
+    if avoidance > 0.0:
+        s2 = math.sin(d[1])
+        c2 = math.cos(d[1])
+        s3 = math.sin(d[2])
+        c3 = math.cos(d[2])
+        gain = 2.0 * avoidance * h / (s2 * s2 + c3 * c3 + 0.1)
+        out[1] += gain * s2 * c2 / table[WEIGHT, 1]
+        out[2] -= gain * c3 * s3 / table[WEIGHT, 2]
+
+
+@kernel
+def rotate_back(e: Array, C: Array, G: Array) -> None:
+    """G <- exp(-[e]x) C, the attitude whose rotation error against C is e. e (3,) [rad], C, G (3, 3)."""
+    angle = math.sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2])
+    if angle > 1e-8:
+        a = math.sin(angle) / angle
+        half = math.sin(0.5 * angle) / angle
+        b = 2.0 * half * half
+    else:
+        a = 1.0
+        b = 0.5
+    for k in range(3):
+        # Rodrigues on each column c: c - a e x c + b e x (e x c)
+        c0 = C[0, k]
+        c1 = C[1, k]
+        c2 = C[2, k]
+        x0 = e[1] * c2 - e[2] * c1
+        x1 = e[2] * c0 - e[0] * c2
+        x2 = e[0] * c1 - e[1] * c0
+        G[0, k] = c0 - a * x0 + b * (e[1] * x2 - e[2] * x1)
+        G[1, k] = c1 - a * x1 + b * (e[2] * x0 - e[0] * x2)
+        G[2, k] = c2 - a * x2 + b * (e[0] * x1 - e[1] * x0)
+
+
+@kernel
+def goal(
+    table: Array,
+    axes: NDArray[np.int64],
+    state: Array,
+    C: Array,
+    h: float,
+    recovery: float,
+    F: Array,
+    G: Array,
+    e: Array,
+) -> bool:
+    """G <- the attitude to go for at the next sample: C, or on the way back to it; e <- the increment to G [rad].
+
+    F <- the attitude now. Returns whether G is C. recovery: share of the smallest frame acceleration.
+    """
+    payload_attitude(axes, state[0:4], F)
+    recovering = False
+    if state[CODE] != EXACT:
+        behind = rotation_error(F, state[TARGET : TARGET + 9].reshape(3, 3), e)
+        slowest = np.inf
+        for i in range(4):
+            if axes[i] >= 0:
+                slowest = min(slowest, table[ACCELERATION, i])
+        closing = h * approach_rate(behind, recovery * slowest, h)
+        if closing < behind * (1.0 - 1e-9):
+            for i in range(3):
+                e[i] *= 1.0 - closing / behind
+            rotate_back(e, C, G)
+            recovering = True
+    if not recovering:
+        G[:] = C
+    rotation_error(G, F, e)
+    return not recovering
+
+
+@kernel
+def settle(horizontal: bool, axes: NDArray[np.int64], weight: Array, d: Array, G: Array, J: Array, work: Array) -> int:
+    """work[POSE] <- the exact pose for G inside the box nearest to d + g (weighted), from work[GUESS].
+
+    Returns how many times the pose was slid along the curve; 0 where no pose inside the box was found.
+    """
+    y = work[POSE]
+    n = work[NULL]
+    lo = work[LO]
+    hi = work[HI]
+    project(horizontal, G, work[GUESS], y)
+    for k in range(1, SLIDES + 1):
+        jacobian(axes, y, J)
+        null_vector(J, n)
+        along = 0.0
+        norm = 0.0
+        for i in range(4):
+            along += n[i] * weight[i] * (d[i] + work[WISH, i] - y[i])
+            norm += n[i] * weight[i] * n[i]
+        z_min, z_max = null_interval(y, n, lo, hi, work[TOLERANCE])
+        z = clamp(along / norm if norm > 0.0 else 0.0, z_min, z_max)
+        for i in range(4):
+            y[i] += n[i] * z
+        project(horizontal, G, y, y)
+        if abs(z) < ALONG and inside(y, lo, hi, work[TOLERANCE]):
+            return k
+    return 0
+
+
+@kernel
+def give_way(
+    axes: NDArray[np.int64],
+    table: Array,
+    d: Array,
+    G: Array,
+    J: Array,
+    e: Array,
+    F: Array,
+    work: Array,
+    A: Array,
+    lo_code: Codes,
+    hi_code: Codes,
+) -> int:
+    """work[GUESS] <- the pose inside the box with the least attitude error against G; returns the code of what binds.
+
+    Two Gauss-Newton steps. `EXACT` where no bound holds it back.
+    """
+    binding = 0
+    x = work[GUESS]
+    for i in range(4):
+        x[i] = d[i]
+    for again in range(2):
+        payload_attitude(axes, x, F)
+        rotation_error(G, F, e)
+        jacobian(axes, x, J)
+        volume = null_vector(J, work[NULL])
+        for i in range(4):
+            work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
+            work[LO, i] -= x[i]
+            work[HI, i] -= x[i]
+            work[WISH, i] += d[i] - x[i]
+        now = box_least_squares(J, e, work[DAMPING], work[WISH], work[LO], work[HI], work[STEP], A)
+        if now > 0 or again == 0:
+            binding = now
+        for i in range(4):
+            work[LO, i] += x[i]
+            work[HI, i] += x[i]
+            work[WISH, i] += x[i] - d[i]
+            x[i] = min(max(x[i] + work[STEP, i], work[LO, i]), work[HI, i])
+    if binding == 0:
+        return EXACT
+    frame = (binding - 1) // 2
+    return int(hi_code[frame] if (binding - 1) % 2 == 1 else lo_code[frame])
+
+
+@kernel
+def advance(state: Array, time: float, x: Array, code: int, C: Array) -> None:
+    """Take the sample x (4,) [rad] at `time` [s] into the state; `code` is its mark, C (3, 3) its target."""
+    h = time - state[CLOCK]
+    if state[PHASE] != FRESH:
+        for i in range(4):
+            state[4 + i] = (x[i] - state[i]) / h
+        state[PAST] = h
+        state[PHASE] = MOVING
+    else:
+        state[PHASE] = PLACED
+    for i in range(4):
+        state[i] = x[i]
+    state[CLOCK] = time
+    state[CODE] = code
+    for i in range(3):
+        for j in range(3):
+            state[TARGET + 3 * i + j] = C[i, j]
+
+
+@kernel
+def prepare(table: Array, state: Array, h: float, work: Array, lo_code: Codes, hi_code: Codes) -> None:
+    """work[LO], work[HI], work[TOLERANCE] <- the box of the next sample, `h` [s] ahead."""
+    past = state[PAST] if state[PHASE] == MOVING else 0.0
+    limit_box(table, state[0:4], state[4:8], past, h, work[LO], work[HI], lo_code, hi_code)
+    tolerances(table, past, h, work[TOLERANCE])
+
+
+def new_state(pose: Array, code: int, attitude: Array) -> Array:
+    """The state of a flight that starts at `pose` (4,) [rad], marked `code`, for `attitude` (3, 3). (STATE,)"""
+    state = np.zeros(STATE)
+    state[:4] = pose
+    state[PHASE] = FRESH
+    state[CODE] = code
+    state[TARGET:] = np.ravel(attitude)
+    return state
