@@ -1,11 +1,11 @@
 """The telemetry sample, and the ring of samples in shared memory.
 
-One writer (the rig's loop), any number of readers, no locks: each slot carries the sequence of the sample in it, written
-after the sample, and readers check it again after they have copied. A slow reader costs the loop nothing; it is told how
-many samples it missed.
+One writer (the rig's loop), any number of readers, no locks: each slot carries the sequence of the sample in it,
+written after the sample, and readers check it again after they have copied. A slow reader costs the loop nothing; it is
+told how many samples it missed.
 
-A row says what was commanded in this tick and is due at the next one; `measured` is what the drive reported at the start
-of this tick, so `tracking_error_deg` and `following_error_deg` compare it with what the tick before had commanded.
+A row says what was commanded in this tick and is due at the next one; `measured` is what the drive reported at the
+start of this tick, so `tracking_error_deg` and `following_error_deg` compare it with what the tick before commanded.
 """
 
 from typing import Any
@@ -76,7 +76,7 @@ Samples = NDArray[np.void]
 
 
 class Ring:
-    """A ring of samples in a buffer: `head` (1,) u8 counts the samples ever written, `slots` (capacity,) holds the last.
+    """A ring of samples: `head` (1,) u8 counts the samples ever written, `slots` (capacity,) holds the newest.
 
     Sequences start at 1, so an untouched slot (0) is never taken for a sample.
     """

@@ -1,0 +1,399 @@
+"""The server's side of a rig process: spawn or adopt it, command it, watch it, read what it shows.
+
+The rig process outlives the server. `RigHost.start` finds a living one by its lock and adopts it, session, lease,
+alarms and all; otherwise it spawns one. When the process dies the host says so at once (a pidfd tells), and starts
+another, which comes up disconnected and carries the alarm.
+"""
+
+import asyncio
+import contextlib
+import os
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import server
+from server.runtime import config as configs
+from server.runtime import wire
+from server.runtime.config import RigConfig
+from server.runtime.link import ControlLink, RigUnreachableError
+from server.runtime.place import Place
+from server.runtime.shared import Shared, SharedError
+from server.runtime.telemetry import Samples
+from server.session.lease import Lease, LeaseToken
+from server.session.states import Command, State
+from server.session.table import allowed
+
+START_S = 20.0
+REPLY_S = 5.0
+POLL_S = 0.005
+BEAT_S = 0.05
+SILENT_S = 0.15  # a rig heartbeat older than this counts as not responding
+_ROOT = str(Path(server.__file__).resolve().parent.parent)
+_RESPAWNS = 3  # in a minute; then a person must look
+
+
+class HostError(Exception):
+    """The rig process cannot be started; the message holds the end of its log."""
+
+
+class RefusedError(Exception):
+    """The rig process refused; `reply` has the code and what is allowed."""
+
+    def __init__(self, reply: wire.Reply) -> None:
+        super().__init__(reply.error.message if reply.error else "refused")
+        self.reply = reply
+
+
+class RigHost:
+    """One rig, as the server sees it. All methods belong to the event loop's thread; `estop` may come from any."""
+
+    def __init__(self, config: RigConfig) -> None:
+        self.config = config
+        self.name = config.name
+        self.rig = config.rig
+        self.rate_hz = config.rate_hz
+        self.adopted = False
+        self._place = Place(config.directory)
+        self._shared: Shared | None = None
+        self._link: ControlLink | None = None
+        self._child: subprocess.Popen[bytes] | None = None
+        self._pid = 0
+        self._pidfd = -1
+        self._dead = True
+        self._responding = True
+        self._offset = 0  # keeps the revision rising over restarts of the process
+        self._last_revision = -1
+        self._changed = asyncio.Event()
+        self._watch: asyncio.Task[None] | None = None
+        self._ending = threading.Event()
+        self._beat: threading.Thread | None = None
+        self._respawned: list[float] = []
+
+    # --- life ---
+
+    async def start(self) -> None:
+        """Spawn or adopt the rig process. Raises `HostError` where it does not come up."""
+        self._place.prepare()
+        pid = self._place.running()
+        self.adopted = pid is not None
+        if pid is None:
+            pid = await self._spawn(self.config)
+        await self._attach(pid)
+        self._beat = threading.Thread(target=self._beat_on, name=f"heartbeat to {self.name}", daemon=True)
+        self._beat.start()
+        self._watch = asyncio.create_task(self._watch_on(), name=f"watch {self.name}")
+
+    async def close(self, stop_rig: bool) -> None:
+        """Let go of the rig process; with `stop_rig` end it: E-stop if it moves, then exit."""
+        self._ending.set()
+        if self._watch is not None:
+            self._watch.cancel()
+            await asyncio.gather(self._watch, return_exceptions=True)
+        if stop_rig and self._link is not None and not self._dead:
+            with contextlib.suppress(RigUnreachableError):
+                await self._link.request("exit", "server", timeout_s=REPLY_S)
+            await self._wait_for_end()
+        await self._detach()
+        if self._beat is not None:
+            self._beat.join()
+
+    async def _wait_for_end(self) -> None:
+        for _ in range(int(REPLY_S / POLL_S)):
+            if self._ended():
+                return
+            await asyncio.sleep(POLL_S)
+        raise HostError(f"rig process {self._pid} of {self.name} does not end")
+
+    # --- commands ---
+
+    async def command(self, command: str, args: dict[str, Any], who: str, lease: LeaseToken | None) -> wire.Reply:
+        """Do a session command (see server/session/states.py). A refusal is a reply, not an exception.
+
+        E-stop and stop take their own lane here too, so that they never queue behind another command.
+        """
+        if command == Command.STOP:
+            return await self.stop(who)
+        before = self._state()
+        if command == Command.ESTOP:
+            self.estop(who)
+            return await self._lane_done("estop_done_ns", before, command, legal=True)
+        return (await self._ask(before, command, "command", who, command=command, args=args, lease=lease)).reply
+
+    async def lease(self, action: str, who: str, to: str | None = None) -> Lease:
+        """take, takeover (by force), release, renew, request, grant. Raises `RefusedError` where it is refused."""
+        answer = await self._ask(self._state(), action, "lease", who, action=action, to=to)
+        if answer.reply.error is not None or answer.lease is None:
+            raise RefusedError(answer.reply)
+        return answer.lease
+
+    def estop(self, who: str) -> None:
+        """E-stop, now: a flag in shared memory that the loop reads every tick. Never waits, never queues."""
+        self._flag("estop", who)
+
+    async def stop(self, who: str) -> wire.Reply:
+        """Stop inside the limits, by the flag lane; needs no lease."""
+        before = self._state()
+        legal = Command.STOP in allowed(State(before))
+        self._flag("stop", who)
+        return await self._lane_done("stop_done_ns", before, Command.STOP, legal=legal)
+
+    # --- what it shows ---
+
+    def snapshot(self) -> wire.Snapshot:
+        """The session as of now; of a dead process its last words, disconnected, with nothing allowed."""
+        published = self._published()
+        health = self._health(published)
+        newest = self.latest()
+        pose = [0.0] * 4 if newest is None else [float(v) for v in newest["measured"][0]]
+        left = published.lease.expires_s
+        if left is not None:
+            heard = (time.monotonic_ns() - published.lease_heard_ns) / 1e9
+            left = max(0.0, published.lease_silent_s - heard)
+        state, can = (State.DISCONNECTED.value, []) if self._dead else (published.state, published.allowed)
+        return wire.Snapshot(
+            rig=published.rig,
+            state=state,
+            revision=published.revision + self._offset,
+            allowed=can,
+            lease=replace(published.lease, expires_s=left),
+            plan=published.plan,
+            alarms=published.alarms,
+            history=published.history,
+            run_id=published.run_id,
+            drive=published.drive,
+            health=health,
+            pose_deg=pose,
+        )
+
+    def samples(self, since_seq: int, limit: int) -> tuple[Samples, int]:
+        """Telemetry after `since_seq`, oldest first, at most `limit`, and how many were lost to the reader."""
+        return self._memory().ring.since(since_seq, limit)
+
+    def latest(self) -> Samples | None:
+        """The newest sample (1,); None before the first."""
+        return self._memory().ring.latest()
+
+    def events(self, since: int) -> tuple[list[dict[str, Any]], int]:
+        """What the rig process has noted (commands, transitions, alarms), and where to ask from next."""
+        return self._memory().events_since(since)
+
+    @property
+    def revision(self) -> int:
+        """Rises with every change that `snapshot` shows, over restarts of the rig process too."""
+        return self._offset if self._shared is None else int(self._shared.header["revision"][0]) + self._offset
+
+    async def wait_change(self, revision: int) -> int:
+        """Wait until the revision is not `revision`; returns the new one."""
+        while self.revision == revision:
+            changed = self._changed
+            if self.revision == revision:
+                await changed.wait()
+        return self.revision
+
+    # --- inside: process ---
+
+    async def _spawn(self, config: RigConfig) -> int:
+        self._place.notes.unlink(missing_ok=True)
+        self._place.config.write_bytes(configs.encode(config))
+        paths = [_ROOT, *filter(None, [os.environ.get("PYTHONPATH")])]
+        # One BLAS thread: its pool would be locked into memory, and nothing in the loop uses it.
+        env = os.environ | {"PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+        with self._place.log.open("ab") as log:
+            # A session of its own: a Ctrl-C at the server's terminal must not reach a moving rig.
+            self._child = subprocess.Popen(  # noqa: ASYNC220
+                [sys.executable, "-m", "server.runtime.process", "--config", str(self._place.config)],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                env=env,
+                start_new_session=True,
+            )
+        deadline = time.monotonic() + START_S
+        while time.monotonic() < deadline:
+            if self._child.poll() is not None:
+                raise HostError(f"the rig process of {self.name} ended at once:\n{self._log_end()}")
+            if self._place.running() == self._child.pid:
+                return self._child.pid
+            await asyncio.sleep(0.02)
+        self._child.kill()
+        self._child.wait()
+        raise HostError(f"the rig process of {self.name} was not ready within {START_S:g} s:\n{self._log_end()}")
+
+    async def _attach(self, pid: int) -> None:
+        link = ControlLink()
+        try:
+            shared = Shared(self._place.memory())
+            await link.open(self._place)
+            self._pidfd = os.pidfd_open(pid)
+        except (OSError, SharedError, RigUnreachableError) as cause:
+            raise HostError(f"the rig process {pid} of {self.name} cannot be adopted ({cause})") from cause
+        self._pid, self._shared, self._link, self._dead = pid, shared, link, False
+        shared.header["server_pid"] = os.getpid()
+        shared.header["server_beat_ns"] = time.monotonic_ns()
+        asyncio.get_running_loop().add_reader(self._pidfd, self._died)
+        self._announce()
+
+    async def _detach(self) -> None:
+        if self._pidfd >= 0:
+            asyncio.get_running_loop().remove_reader(self._pidfd)
+            os.close(self._pidfd)
+            self._pidfd = -1
+        if self._link is not None:
+            await self._link.close()
+
+    def _died(self) -> None:
+        asyncio.get_running_loop().remove_reader(self._pidfd)
+        self._dead = True
+        self._offset += 1
+        self._announce()
+
+    def _ended(self) -> bool:
+        if self._child is not None and self._child.pid == self._pid:
+            return self._child.poll() is not None
+        return self._place.running() != self._pid
+
+    async def _revive(self) -> None:
+        """Start another process in place of the dead one, with the cause as its first alarm."""
+        now = time.monotonic()
+        self._respawned = [t for t in self._respawned if now - t < 60.0]
+        if len(self._respawned) >= _RESPAWNS:
+            return
+        self._respawned.append(now)
+        last = self._published()
+        how = ""
+        if self._child is not None and self._child.pid == self._pid:
+            code = self._child.wait()
+            how = f" (signal {-code})" if code < 0 else f" (exit status {code})"
+        told = f"the rig process died{how} while {last.state}; the drive brakes by its own watchdog"
+        await self._detach()
+        last_revision = self.revision
+        pid = await self._spawn(replace(self.config, after_loss=told))
+        self._shared = None
+        self._offset = last_revision + 1
+        await self._attach(pid)
+
+    async def _watch_on(self) -> None:
+        while True:
+            await asyncio.sleep(POLL_S)
+            if self._dead:
+                try:
+                    await self._revive()
+                except HostError as cause:
+                    self._place.log.open("a").write(f"server: {cause}\n")
+                    await asyncio.sleep(1.0)
+                continue
+            responding = self._beat_age() < SILENT_S
+            if responding != self._responding:
+                self._responding = responding
+                self._offset += 1
+            if self.revision != self._last_revision:
+                self._announce()
+
+    def _announce(self) -> None:
+        self._last_revision = self.revision
+        changed, self._changed = self._changed, asyncio.Event()
+        changed.set()
+
+    def _beat_on(self) -> None:
+        # A thread, because a heartbeat says that the process lives; whether the operator is there the lease tells.
+        while not self._ending.wait(BEAT_S):
+            shared = self._shared
+            if shared is not None:
+                shared.header["server_beat_ns"] = time.monotonic_ns()
+
+    # --- inside: requests ---
+
+    def _flag(self, lane: str, who: str) -> None:
+        header = self._memory().header
+        header[f"{lane}_who"] = who.encode()[:63]
+        header[f"{lane}_request_ns"] = time.monotonic_ns()
+
+    async def _lane_done(self, field: str, before: str, command: str, *, legal: bool) -> wire.Reply:
+        header = self._memory().header
+        asked = int(header[field.replace("done", "request")][0])
+        deadline = time.monotonic() + REPLY_S
+        while int(header[field][0]) < asked:
+            if self._dead or time.monotonic() > deadline:
+                return self._unreachable(
+                    before, command, "the rig process does not answer; the drive's watchdog brakes"
+                )
+            await asyncio.sleep(0.001)
+        after = self._state()
+        if legal:
+            return wire.Reply(True, before, after, self.revision)
+        can = [str(c) for c in allowed(State(before))]
+        message = f"{command} is not possible while {before}; allowed now: {', '.join(can)}"
+        body = wire.ErrorBody("illegal_command", message, before, command, can)
+        return wire.Reply(False, before, after, self.revision, body)
+
+    async def _ask(self, before: str, word: str, op: str, who: str, **rest: Any) -> wire.Answer:
+        if self._dead or self._link is None:
+            return wire.Answer(0, self._unreachable(before, word, "the rig process is not running"))
+        try:
+            answer = await self._link.request(op, who, timeout_s=REPLY_S, **rest)
+        except RigUnreachableError as cause:
+            return wire.Answer(0, self._unreachable(before, word, str(cause)))
+        return replace(answer, reply=replace(answer.reply, revision=answer.reply.revision + self._offset))
+
+    def _unreachable(self, before: str, command: str, message: str) -> wire.Reply:
+        body = wire.ErrorBody("rig_unreachable", message, self._state(), command, [])
+        return wire.Reply(False, before, self._state(), self.revision, body)
+
+    # --- inside: reading ---
+
+    def _memory(self) -> Shared:
+        if self._shared is None:
+            raise HostError(f"{self.name} has not been started")
+        return self._shared
+
+    def _published(self) -> wire.Published:
+        data = self._memory().snapshot()
+        if data is None:
+            raise HostError(f"the rig process of {self.name} has published nothing")
+        return wire.decode_published(data)
+
+    def _state(self) -> str:
+        return State.DISCONNECTED.value if self._dead else self._published().state
+
+    def _beat_age(self) -> float:
+        return (time.monotonic_ns() - int(self._memory().header["rig_beat_ns"][0])) / 1e9
+
+    def _health(self, published: wire.Published) -> wire.Health:
+        memory = self._memory()
+        header = memory.header
+        recorder_age = (time.monotonic_ns() - int(header["recorder_beat_ns"][0])) / 1e9
+        return wire.Health(
+            realtime=published.realtime,
+            rate_hz=self.rate_hz,
+            lateness_us=memory.lateness_us(),
+            busy_us=int(header["busy_ns"][0]) / 1000.0,
+            ticks=int(header["ticks"][0]),
+            deadline_misses=int(header["misses"][0]),
+            rig_alive=not self._dead and self._beat_age() < SILENT_S,
+            rig_pid=self._pid,
+            heartbeat_age_s=self._beat_age(),
+            recorder=wire.RecorderHealth(
+                alive=recorder_age < 1.0,
+                run=_text(header["recorder_run"][0]),
+                lost=int(header["recorder_lost"][0]),
+                lag=max(0, int(header["head"][0]) - int(header["recorder_seq"][0])),
+                bytes_written=int(header["recorder_bytes"][0]),
+                chunks=int(header["recorder_chunks"][0]),
+                free_bytes=int(header["recorder_free_bytes"][0]),
+                error=_text(header["recorder_error"][0]),
+            ),
+        )
+
+    def _log_end(self) -> str:
+        return self._place.log.read_text("utf-8", "replace")[-2000:]
+
+
+def _text(value: np.bytes_) -> str:
+    return bytes(value).decode("utf-8", "replace")
