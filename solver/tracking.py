@@ -146,6 +146,15 @@ def settle(horizontal: bool, axes: NDArray[np.int64], weight: Array, d: Array, G
 
 
 @kernel
+def binding_code(binding: int, lo_code: Codes, hi_code: Codes) -> int:
+    """The `limited_code` of a bound as `box_least_squares` numbers them; `EXACT` where none binds."""
+    if binding == 0:
+        return EXACT
+    frame = (binding - 1) // 2
+    return int(hi_code[frame] if (binding - 1) % 2 == 1 else lo_code[frame])
+
+
+@kernel
 def give_way(
     axes: NDArray[np.int64],
     table: Array,
@@ -185,10 +194,40 @@ def give_way(
             work[HI, i] += x[i]
             work[WISH, i] += x[i] - d[i]
             x[i] = min(max(x[i] + work[STEP, i], work[LO, i]), work[HI, i])
-    if binding == 0:
-        return EXACT
-    frame = (binding - 1) // 2
-    return int(hi_code[frame] if (binding - 1) % 2 == 1 else lo_code[frame])
+    return binding_code(binding, lo_code, hi_code)
+
+
+@kernel
+def finish(
+    horizontal: bool,
+    axes: NDArray[np.int64],
+    table: Array,
+    state: Array,
+    on_target: bool,
+    G: Array,
+    J: Array,
+    e: Array,
+    F: Array,
+    work: Array,
+    A: Array,
+    lo_code: Codes,
+    hi_code: Codes,
+) -> tuple[int, int]:
+    """work[POSE] <- the sample, from the method's proposal work[GUESS]; returns (slides along the curve, code)."""
+    d = state[0:4]
+    slides = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
+    code = EXACT
+    if slides == 0:
+        code = give_way(axes, table, d, G, J, e, F, work, A, lo_code, hi_code)
+        # The nearest pose may be exact after all, where it was only the way to it that missed the box.
+        slides = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
+        if slides == 0:
+            work[POSE] = work[GUESS]
+    if slides > 0:
+        code = EXACT
+    if code == EXACT and not (slides > 0 and on_target):
+        code = int(state[CODE])  # on the way back: what made it leave
+    return slides, code
 
 
 @kernel

@@ -41,5 +41,5 @@ class StepMethod:
     source: str  # paper, section, equation
     claims_limits: bool
     options: type[Any]  # a frozen dataclass with defaults
-    # (rig, options, start pose (4,) [rad] or None for the exact one nearest home, first attitude (3, 3)) -> Stepper
+    # (rig, options, near which pose (4,) [rad] to start, None for home, first attitude (3, 3)) -> Stepper
     stepper: Callable[[Rig, Any, Array | None, Array], Stepper]

@@ -11,7 +11,6 @@ from solver.kinematics import jacobian, null_vector
 from solver.limits import WEIGHT, limit_table
 from solver.methods.base import Block, StepMethod
 from solver.rig import Rig
-from solver.solution import EXACT
 from solver.start import start_pose
 from solver.step import quadratic_step
 from solver.tracking import (
@@ -28,11 +27,10 @@ from solver.tracking import (
     TOLERANCE,
     WISH,
     advance,
-    give_way,
+    finish,
     goal,
     new_state,
     prepare,
-    settle,
     wish,
 )
 
@@ -102,17 +100,9 @@ def exact_block(
             quadratic_step(
                 J, work[NULL], volume, table[WEIGHT], d, work[WISH], e, work[LO], work[HI], work[TOLERANCE], work[GUESS]
             )
-            iterations[k] = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
-            code = EXACT
-            if iterations[k] == 0:
-                code = give_way(axes, table, d, G, J, e, F, work, A, lo_code, hi_code)
-                iterations[k] = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
-                if iterations[k] == 0:
-                    work[POSE] = work[GUESS]
-            if iterations[k] > 0:
-                code = EXACT if on_target else int(state[CODE])
-            elif code == EXACT:
-                code = int(state[CODE])
+            iterations[k], code = finish(
+                horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code
+            )
         angles[k] = work[POSE]
         limited[k] = code
         advance(state, time[k], angles[k], code, C)

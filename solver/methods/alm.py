@@ -1,0 +1,277 @@
+"""`alm`: the augmented Lagrange multiplier method with position limits (Zhao et al. 2025; METHODS, section 5).
+
+M(x) = f(x) + (1/2r) sum_j { max[0, mu_j + r g_j(x)]^2 - mu_j^2 } + lambda^T h + (r/2) |h|^2, with
+f = 1/2 (x-d-g)^T W (x-d-g), h = J (x-d) - e and the eight bounds of the box as g_j. The paper's f is divided by dt^2;
+here everything is multiplied by it, which keeps r apart from the sample rate. The bounds are those of one sample
+(`solver.limits`), so that rate and acceleration limits are obeyed as well as the paper's position limits; the unknown
+is the step s = x - d rather than x, which costs no digits at large angles.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver._jit import kernel
+from solver.errors import MethodError
+from solver.kinematics import jacobian, null_vector, rotation_error
+from solver.limits import WEIGHT, limit_table
+from solver.methods.base import Block, StepMethod
+from solver.rig import Rig
+from solver.solution import EXACT
+from solver.start import start_pose
+from solver.step import box_least_squares, solve_symmetric, squared_damping
+from solver.tracking import (
+    CLOCK,
+    CODE,
+    DAMPING,
+    FRESH,
+    GUESS,
+    HI,
+    LO,
+    NULL,
+    PHASE,
+    POSE,
+    ROWS,
+    SHIFT,
+    STEP,
+    TARGET,
+    WISH,
+    advance,
+    binding_code,
+    finish,
+    goal,
+    new_state,
+    prepare,
+    wish,
+)
+
+Array = NDArray[np.float64]
+
+
+class Mode(StrEnum):
+    """What the step is asked for."""
+
+    OPEN_LOOP = "open_loop"  # the flight's own increment, as in the paper: the linearisation's error adds up
+    CLOSED_LOOP = "closed_loop"  # the increment from the present attitude to the next: no drift
+    EXACT = "exact"  # closed loop, then the exact solution curve
+
+
+@dataclass(frozen=True)
+class AlmOptions:
+    """Raises `MethodError` where a value is out of range.
+
+    penalty: r of the first iteration; growth: beta, its factor from one to the next; max_penalty: where it stops
+    growing; residual: |h| [rad] and complementarity at which the iteration stops; max_iterations: the cap.
+    avoidance [rad/s], homing [1/s], recovery: as in `ExactOptions`.
+    """
+
+    mode: Mode = Mode.EXACT
+    penalty: float = 10.0
+    growth: float = 4.0
+    max_penalty: float = 1e8
+    residual: float = 1e-12
+    max_iterations: int = 30
+    avoidance: float = 0.0
+    homing: float = 0.0
+    recovery: float = 0.5
+
+    def __post_init__(self) -> None:
+        try:
+            object.__setattr__(self, "mode", Mode(self.mode))
+        except ValueError:
+            raise MethodError(f"option mode = {self.mode!r}: expected one of {', '.join(Mode)}") from None
+        for name, least, most in (
+            ("penalty", 1e-3, 1e8),
+            ("growth", 1.0, 1e3),
+            ("max_penalty", self.penalty, 1e10),
+            ("residual", 1e-15, 1.0),
+            ("max_iterations", 1, 1000),
+            ("avoidance", 0.0, 1e6),
+            ("homing", 0.0, 1e6),
+            ("recovery", 1e-6, 1.0),
+        ):
+            if not least <= getattr(self, name) <= most:
+                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected {least:g} to {most:g}")
+
+
+# Rows of the multipliers' work array (MULTIPLIER_ROWS, 5): lambda, mu of both sides, K with b as its last column
+EQUALITY, LOWER, UPPER, SYSTEM = 0, 1, 2, 3
+MULTIPLIER_ROWS = 7
+
+
+@kernel
+def multiplier_step(
+    J: Array, weight: Array, g: Array, e: Array, lo: Array, hi: Array, tuning: Array, room: Array, s: Array
+) -> int:
+    """s <- the step by the augmented multiplier method; returns the iterations, negative where it has not settled.
+
+    J (3, 4); e (3,); weight, g, s (4,); lo, hi (4,) bounds of the step; room (MULTIPLIER_ROWS, 5) to work in.
+    tuning: penalty, growth, max_penalty, residual, max_iterations.
+    """
+    r = tuning[0]
+    residual = tuning[3]
+    K = room[SYSTEM : SYSTEM + 4]
+    b = room[SYSTEM : SYSTEM + 4, 4]
+    for i in range(5):
+        room[EQUALITY, i] = 0.0
+        room[LOWER, i] = 0.0
+        room[UPPER, i] = 0.0
+    for i in range(4):
+        s[i] = 0.0
+    for iteration in range(1, int(tuning[4]) + 1):
+        for i in range(4):
+            b[i] = weight[i] * g[i]
+            for k in range(3):
+                b[i] += J[k, i] * (r * e[k] - room[EQUALITY, k])
+            for j in range(i + 1):
+                K[i, j] = r * (J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j])
+            K[i, i] += weight[i]
+            # A bound counts where its term in M is not zero at the present iterate.
+            if room[UPPER, i] + r * (s[i] - hi[i]) > 0.0:
+                K[i, i] += r
+                b[i] += r * hi[i] - room[UPPER, i]
+            elif room[LOWER, i] + r * (lo[i] - s[i]) > 0.0:
+                K[i, i] += r
+                b[i] += r * lo[i] + room[LOWER, i]
+        if not solve_symmetric(K, b, 4):
+            return -iteration
+        for i in range(4):
+            s[i] = b[i]
+        worst = 0.0
+        for k in range(3):
+            h = J[k, 0] * s[0] + J[k, 1] * s[1] + J[k, 2] * s[2] + J[k, 3] * s[3] - e[k]
+            room[EQUALITY, k] += r * h
+            worst = max(worst, abs(h))
+        for i in range(4):
+            # Complementarity: a bound is kept, and its multiplier is zero unless it is met.
+            above = s[i] - hi[i]
+            below = lo[i] - s[i]
+            worst = max(worst, abs(max(above, -room[UPPER, i] / r)), abs(max(below, -room[LOWER, i] / r)))
+            room[UPPER, i] = max(0.0, room[UPPER, i] + r * above)
+            room[LOWER, i] = max(0.0, room[LOWER, i] + r * below)
+        if worst <= residual:
+            return iteration
+        r = min(r * tuning[1], tuning[2])
+    return -int(tuning[4])
+
+
+@kernel
+def alm_block(
+    horizontal: bool,
+    axes: NDArray[np.int64],
+    table: Array,
+    gains: Array,
+    tuning: Array,
+    feedback: bool,
+    exact: bool,
+    time: Array,
+    attitude: Array,
+    state: Array,
+    angles: Array,
+    limited: NDArray[np.int16],
+    iterations: NDArray[np.int32],
+) -> None:
+    """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
+
+    gains: avoidance, homing, recovery; tuning: as in `multiplier_step`; feedback: close the loop; exact: project.
+    """
+    work = np.empty((ROWS, 4))
+    room = np.empty((MULTIPLIER_ROWS, 5))
+    A = np.empty((4, 5))
+    J = np.empty((3, 4))
+    F = np.empty((3, 3))
+    G = np.empty((3, 3))
+    e = np.empty(3)
+    lo_code = np.empty(4, np.int16)
+    hi_code = np.empty(4, np.int16)
+    d = state[0:4]
+    for k in range(time.shape[0]):
+        C = attitude[k]
+        if state[PHASE] == FRESH:
+            iterations[k] = 0
+            code = int(state[CODE])
+            work[POSE] = d
+        else:
+            h = time[k] - state[CLOCK]
+            prepare(table, state, h, work, lo_code, hi_code)
+            wish(table, d, h, gains[0], gains[1], work[WISH])
+            on_target = True
+            if feedback:
+                on_target = goal(table, axes, state, C, h, gains[2], F, G, e)
+            else:
+                rotation_error(C, state[TARGET : TARGET + 9].reshape(3, 3), e)
+            jacobian(axes, d, J)
+            for i in range(4):
+                work[LO, i] -= d[i]
+                work[HI, i] -= d[i]
+            count = multiplier_step(J, table[WEIGHT], work[WISH], e, work[LO], work[HI], tuning, room, work[STEP])
+            iterations[k] = abs(count)
+            code = EXACT
+            if count < 0 and not exact:
+                # Not settled: no step inside the box has this increment.
+                volume = null_vector(J, work[NULL])
+                for i in range(4):
+                    work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
+                binding = box_least_squares(J, e, work[DAMPING], work[WISH], work[LO], work[HI], work[STEP], A)
+                code = binding_code(binding, lo_code, hi_code)
+            for i in range(4):
+                work[LO, i] += d[i]
+                work[HI, i] += d[i]
+                work[GUESS, i] = d[i] + work[STEP, i]
+                # Within the residual the settled step may be outside its box; the limits hold to the last digit.
+                work[POSE, i] = min(max(work[GUESS, i], work[LO, i]), work[HI, i])
+            if exact:
+                _, code = finish(horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code)
+            elif code == EXACT and not on_target:
+                code = int(state[CODE])
+        angles[k] = work[POSE]
+        limited[k] = code
+        advance(state, time[k], angles[k], code, C)
+
+
+class AlmStepper:
+    """One flight in progress with `alm`."""
+
+    def __init__(self, rig: Rig, options: AlmOptions, start: Array | None, attitude: Array) -> None:
+        if not rig.geometry.redundant:
+            raise MethodError(f"alm needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
+        self._rig = rig
+        self._mode = options.mode
+        self._table = limit_table(rig)
+        self._gains = np.array([options.avoidance, options.homing, options.recovery])
+        self._tuning = np.array(
+            [options.penalty, options.growth, options.max_penalty, options.residual, options.max_iterations]
+        )
+        self._state = new_state(*start_pose(rig, attitude, start), attitude)
+
+    def block(self, time: Array, attitude: Array) -> Block:
+        """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
+        m = len(time)
+        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
+        alm_block(
+            self._rig.geometry.horizontal,
+            self._rig.axes,
+            self._table,
+            self._gains,
+            self._tuning,
+            self._mode is not Mode.OPEN_LOOP,
+            self._mode is Mode.EXACT,
+            time,
+            attitude,
+            self._state,
+            out.angles,
+            out.limited,
+            out.iterations,
+        )
+        return out
+
+
+METHOD = StepMethod(
+    name="alm",
+    source="Zhao et al. 2025, doi 10.19306/j.cnki.2095-8110.2025.03.014",
+    claims_limits=True,
+    options=AlmOptions,
+    stepper=AlmStepper,
+)
