@@ -90,9 +90,12 @@ def _solution(
 
 
 def check_flight(time: ArrayLike, attitude: ArrayLike) -> tuple[Array, Array]:
-    """(time (n,), attitude (n, 3, 3)) as contiguous arrays. Raises `InputError` where they are no flight."""
-    t = np.ascontiguousarray(time, dtype=np.float64)
-    C = np.ascontiguousarray(attitude, dtype=np.float64)
+    """(time (n,), attitude (n, 3, 3)), copied. Raises `InputError` where they are no flight.
+
+    Copies, because a solution keeps its time read-only, and because kernels compile again for read-only arrays.
+    """
+    t = np.array(time, dtype=np.float64, order="C")
+    C = np.array(attitude, dtype=np.float64, order="C")
     if t.ndim != 1 or not t.size:
         raise InputError("time", None, t.shape, "(n,) seconds, at least one sample")
     if C.shape != (len(t), 3, 3):

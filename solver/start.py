@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 GRID = 720  # samples of each chart; half a degree
 HALVINGS = 40  # of the grid's step: far below rounding
 DESCENTS = 60  # Gauss-Newton steps where no exact pose is inside the limits
+LONGEST_DESCENT = 0.2  # [rad] a frame in one of them
+DESCENT_DAMPING = 1e-9
 
 
 @kernel
@@ -27,6 +29,13 @@ def turn_inside(angle: float, reference: float, low: float, high: float) -> floa
     while angle < low and angle + TURN <= high + (low - angle):
         angle += TURN
     return angle
+
+
+@kernel
+def copy(source: Array, target: Array) -> None:
+    """target <- source, (4,): a slice assignment takes Numba far longer to compile."""
+    for i in range(4):
+        target[i] = source[i]
 
 
 @kernel
@@ -46,7 +55,7 @@ def chart_pose(
     cost = 0.0
     for i in range(4):
         d[i] = turn_inside(d[i], reference[i], table[MIN, i], table[MAX, i])
-        outside = max(outside, table[MIN, i] - d[i], d[i] - table[MAX, i])
+        outside = max(outside, max(table[MIN, i] - d[i], d[i] - table[MAX, i]))
         cost += table[WEIGHT, i] * (d[i] - reference[i]) ** 2
     return outside, cost
 
@@ -63,7 +72,7 @@ def search_start(table: Array, axes: NDArray[np.int64], horizontal: bool, C: Arr
     outside = 0.0
     cost = 0.0
     for i in range(4):
-        outside = max(outside, table[MIN, i] - d[i], d[i] - table[MAX, i])
+        outside = max(outside, max(table[MIN, i] - d[i], d[i] - table[MAX, i]))
         cost += table[WEIGHT, i] * (d[i] - reference[i]) ** 2
     if outside <= 0.0 and cost < 1e-16:
         return -1
@@ -74,20 +83,20 @@ def search_start(table: Array, axes: NDArray[np.int64], horizontal: bool, C: Arr
         for k in range(GRID):
             parameter = reference[kept] + TURN * k / GRID
             out, c = chart_pose(table, horizontal, C, chart, parameter, reference, pose)
-            if (max(out, 0.0), c) < (max(outside, 0.0), cost):
+            if out < outside or (out <= outside and c < cost):
                 outside, cost = out, c
                 best_chart, best_parameter = chart, parameter
-                d[:] = pose
+                copy(pose, d)
     if best_chart >= 0:
         step = TURN / GRID
         for _ in range(HALVINGS):
             for sign in (-1.0, 1.0):
                 parameter = best_parameter + sign * step
                 out, c = chart_pose(table, horizontal, C, best_chart, parameter, reference, pose)
-                if (max(out, 0.0), c) < (max(outside, 0.0), cost):
+                if out < outside or (out <= outside and c < cost):
                     outside, cost = out, c
                     best_parameter = parameter
-                    d[:] = pose
+                    copy(pose, d)
                     break
             else:
                 step *= 0.5
@@ -104,16 +113,21 @@ def search_start(table: Array, axes: NDArray[np.int64], horizontal: bool, C: Arr
     A = np.empty((4, 5))
     e = np.empty(3)
     s = np.empty(4)
-    zero = np.zeros(4)
-    damping = np.full(4, 1e-9)
+    work = np.empty((4, 4))
     for _ in range(DESCENTS):
         payload_attitude(axes, d, F)
         if rotation_error(C, F, e) < 1e-12:
             break
         jacobian(axes, d, J)
-        box_least_squares(J, e, damping, zero, table[MIN] - d, table[MAX] - d, s, A)
         for i in range(4):
-            d[i] = min(max(d[i] + min(max(s[i], -0.2), 0.2), table[MIN, i]), table[MAX, i])
+            work[0, i] = table[MIN, i] - d[i]
+            work[1, i] = table[MAX, i] - d[i]
+            work[2, i] = DESCENT_DAMPING
+            work[3, i] = 0.0
+        box_least_squares(J, e, work[2], work[3], work[0], work[1], s, A)
+        for i in range(4):
+            step = min(max(s[i], -LONGEST_DESCENT), LONGEST_DESCENT)
+            d[i] = min(max(d[i] + step, table[MIN, i]), table[MAX, i])
     return worst
 
 

@@ -23,10 +23,9 @@ from solver.step import box_least_squares, clamp, null_interval, squared_damping
 
 Array = NDArray[np.float64]
 
-# State of a flight in progress, one array: d (4), v (4), then
+# State of a flight in progress, one array: d (4), v (4), then these; beside it `target`, the last attitude (3, 3)
 PAST, CLOCK, PHASE, CODE = 8, 9, 10, 11  # interval just past [s], time [s], phase, code of the last sample
-TARGET = 12  # the last sample's attitude (9)
-STATE = 21
+STATE = 12
 FRESH, PLACED, MOVING = 0.0, 1.0, 2.0  # no sample yet; a pose but no rate; both
 
 # Rows of the work array of one sample, (ROWS, 4)
@@ -85,6 +84,7 @@ def goal(
     table: Array,
     axes: NDArray[np.int64],
     state: Array,
+    target: Array,
     C: Array,
     h: float,
     recovery: float,
@@ -99,7 +99,7 @@ def goal(
     payload_attitude(axes, state[0:4], F)
     recovering = False
     if state[CODE] != EXACT:
-        behind = rotation_error(F, state[TARGET : TARGET + 9].reshape(3, 3), e)
+        behind = rotation_error(F, target, e)
         slowest = np.inf
         for i in range(4):
             if axes[i] >= 0:
@@ -111,7 +111,9 @@ def goal(
             rotate_back(e, C, G)
             recovering = True
     if not recovering:
-        G[:] = C
+        for i in range(3):
+            for j in range(3):
+                G[i, j] = C[i, j]
     rotation_error(G, F, e)
     return not recovering
 
@@ -222,7 +224,8 @@ def finish(
         # The nearest pose may be exact after all, where it was only the way to it that missed the box.
         slides = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
         if slides == 0:
-            work[POSE] = work[GUESS]
+            for i in range(4):
+                work[POSE, i] = work[GUESS, i]
     if slides > 0:
         code = EXACT
     if code == EXACT and not (slides > 0 and on_target):
@@ -231,7 +234,7 @@ def finish(
 
 
 @kernel
-def advance(state: Array, time: float, x: Array, code: int, C: Array) -> None:
+def advance(state: Array, target: Array, time: float, x: Array, code: int, C: Array) -> None:
     """Take the sample x (4,) [rad] at `time` [s] into the state; `code` is its mark, C (3, 3) its target."""
     h = time - state[CLOCK]
     if state[PHASE] != FRESH:
@@ -247,7 +250,7 @@ def advance(state: Array, time: float, x: Array, code: int, C: Array) -> None:
     state[CODE] = code
     for i in range(3):
         for j in range(3):
-            state[TARGET + 3 * i + j] = C[i, j]
+            target[i, j] = C[i, j]
 
 
 @kernel
@@ -258,11 +261,10 @@ def prepare(table: Array, state: Array, h: float, work: Array, lo_code: Codes, h
     tolerances(table, past, h, work[TOLERANCE])
 
 
-def new_state(pose: Array, code: int, attitude: Array) -> Array:
-    """The state of a flight that starts at `pose` (4,) [rad], marked `code`, for `attitude` (3, 3). (STATE,)"""
+def new_state(pose: Array, code: int) -> Array:
+    """The state of a flight that starts at `pose` (4,) [rad], marked `code`. (STATE,)"""
     state = np.zeros(STATE)
     state[:4] = pose
     state[PHASE] = FRESH
     state[CODE] = code
-    state[TARGET:] = np.ravel(attitude)
     return state

@@ -36,7 +36,6 @@ from solver.tracking import (
     ROWS,
     SHIFT,
     STEP,
-    TARGET,
     WISH,
     advance,
     binding_code,
@@ -169,6 +168,7 @@ def alm_block(
     time: Array,
     attitude: Array,
     state: Array,
+    target: Array,
     angles: Array,
     limited: NDArray[np.int16],
     iterations: NDArray[np.int32],
@@ -192,16 +192,17 @@ def alm_block(
         if state[PHASE] == FRESH:
             iterations[k] = 0
             code = int(state[CODE])
-            work[POSE] = d
+            for i in range(4):
+                work[POSE, i] = d[i]
         else:
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
             wish(table, d, h, gains[0], gains[1], work[WISH])
             on_target = True
             if feedback:
-                on_target = goal(table, axes, state, C, h, gains[2], F, G, e)
+                on_target = goal(table, axes, state, target, C, h, gains[2], F, G, e)
             else:
-                rotation_error(C, state[TARGET : TARGET + 9].reshape(3, 3), e)
+                rotation_error(C, target, e)
             jacobian(axes, d, J)
             for i in range(4):
                 work[LO, i] -= d[i]
@@ -226,9 +227,10 @@ def alm_block(
                 _, code = finish(horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code)
             elif code == EXACT and not on_target:
                 code = int(state[CODE])
-        angles[k] = work[POSE]
+        for i in range(4):
+            angles[k, i] = work[POSE, i]
         limited[k] = code
-        advance(state, time[k], angles[k], code, C)
+        advance(state, target, time[k], work[POSE], code, C)
 
 
 class AlmStepper:
@@ -244,7 +246,8 @@ class AlmStepper:
         self._tuning = np.array(
             [options.penalty, options.growth, options.max_penalty, options.residual, options.max_iterations]
         )
-        self._state = new_state(*start_pose(rig, attitude, start), attitude)
+        self._state = new_state(*start_pose(rig, attitude, start))
+        self._target = np.array(attitude, order="C")
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
@@ -261,6 +264,7 @@ class AlmStepper:
             time,
             attitude,
             self._state,
+            self._target,
             out.angles,
             out.limited,
             out.iterations,

@@ -29,7 +29,7 @@ class Stepper(Protocol):
     """A flight in progress: keeps pose, rate and multipliers from block to block."""
 
     def block(self, time: Array, attitude: Array) -> Block:
-        """Advance over samples: time (m,) [s] strictly increasing over calls, attitude (m, 3, 3) body from reference."""
+        """Advance over samples: time (m,) [s] increasing from call to call, attitude (m, 3, 3) body from reference."""
         ...
 
 

@@ -67,6 +67,7 @@ def exact_block(
     time: Array,
     attitude: Array,
     state: Array,
+    target: Array,
     angles: Array,
     limited: NDArray[np.int16],
     iterations: NDArray[np.int32],
@@ -89,12 +90,13 @@ def exact_block(
         if state[PHASE] == FRESH:
             code = int(state[CODE])
             iterations[k] = 0
-            work[POSE] = d
+            for i in range(4):
+                work[POSE, i] = d[i]
         else:
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
             wish(table, d, h, gains[0], gains[1], work[WISH])
-            on_target = goal(table, axes, state, C, h, gains[2], F, G, e)
+            on_target = goal(table, axes, state, target, C, h, gains[2], F, G, e)
             jacobian(axes, d, J)
             volume = null_vector(J, work[NULL])
             quadratic_step(
@@ -103,9 +105,10 @@ def exact_block(
             iterations[k], code = finish(
                 horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code
             )
-        angles[k] = work[POSE]
+        for i in range(4):
+            angles[k, i] = work[POSE, i]
         limited[k] = code
-        advance(state, time[k], angles[k], code, C)
+        advance(state, target, time[k], work[POSE], code, C)
 
 
 class ExactStepper:
@@ -117,7 +120,8 @@ class ExactStepper:
         self._rig = rig
         self._table = limit_table(rig)
         self._gains = np.array([options.avoidance, options.homing, options.recovery])
-        self._state = new_state(*start_pose(rig, attitude, start), attitude)
+        self._state = new_state(*start_pose(rig, attitude, start))
+        self._target = np.array(attitude, order="C")
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
@@ -131,6 +135,7 @@ class ExactStepper:
             time,
             attitude,
             self._state,
+            self._target,
             out.angles,
             out.limited,
             out.iterations,
