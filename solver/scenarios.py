@@ -1,8 +1,8 @@
 """The scenario suite: the papers' cases and the ones that break methods, generated from a few numbers.
 
 An angle is a constant plus sines and minimum-jerk ramps, so every attitude is twice differentiable. Angles [rad],
-time [s]. The sources print the kinds of case (Zhao 2025, section 4: small angles, large angles, over the limit with a
-small and a large pitch; Lin 2022, section 4: pitch and yaw both beyond 90 deg) but not every number; ours are here.
+time [s]. The kinds of case are the papers' (Zhao 2025: small angles, large angles, over the limit with a small and a
+large pitch; Lin 2022: pitch and yaw both beyond 90 deg); the numbers are ours, the papers' are not at hand.
 """
 
 import math
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.attitude import quaternion_from_euler
+from solver.attitude import dcm_from_quaternion, euler_from_dcm, quaternion_from_euler
 from solver.errors import InputError
 
 Array = NDArray[np.float64]
@@ -77,6 +77,7 @@ class Scenario:
     rate: float = 1000.0
     jitter: float = 0.0  # largest displacement of an inner time stamp, in sample periods (< 0.5)
     start: tuple[float, float, float, float] | None = None  # frame angles to start from
+    tilt: float = 0.0  # the whole flight turned about the reference x axis, so that the nose passes beside the poles
 
     @property
     def time(self) -> Array:
@@ -89,14 +90,23 @@ class Scenario:
 
     @property
     def euler(self) -> Array:
-        """(n, 3) yaw, pitch, roll [rad], continuous (not wrapped)."""
-        time = self.time
-        return np.stack([self.yaw.at(time), self.pitch.at(time), self.roll.at(time)], axis=-1)
+        """(n, 3) yaw, pitch, roll [rad]: the ones the flight is made of, not wrapped; of a tilted flight, unwrapped."""
+        if self.tilt == 0.0:
+            return self._untilted
+        return np.unwrap(np.stack(euler_from_dcm(dcm_from_quaternion(self.quaternion)), axis=-1), axis=0)
 
     @property
     def quaternion(self) -> Array:
         """(n, 4) w, x, y, z, reference to body, continuous."""
-        return quaternion_from_euler(*self.euler.T)
+        q = quaternion_from_euler(*self._untilted.T)
+        if self.tilt == 0.0:
+            return q
+        return _product(np.array([math.cos(0.5 * self.tilt), math.sin(0.5 * self.tilt), 0.0, 0.0]), q)
+
+    @property
+    def _untilted(self) -> Array:
+        time = self.time
+        return np.stack([self.yaw.at(time), self.pitch.at(time), self.roll.at(time)], axis=-1)
 
 
 def _sine(amplitude: float, period: float, phase: float = 0.0) -> Sine:
@@ -160,10 +170,11 @@ _SUITE = (
     ),
     Scenario(
         "both_beyond_90",
-        "Pitch and yaw both beyond 90 deg: both three-axis rigs blow up.",
-        yaw=_angle(_sine(120.0, 10.0)),
-        pitch=_angle(_sine(110.0, 10.0, 15.0)),
-        roll=_angle(_sine(30.0, 5.0)),
+        "Pitch beyond 90 deg, then yaw beyond 90 deg, 4 deg beside both poles: both three-axis rigs blow up.",
+        yaw=_angle(_ramp(120.0, 4.0, 7.0), _ramp(-120.0, 7.0, 10.0)),
+        pitch=_angle(_ramp(110.0, 0.0, 3.0), _ramp(-110.0, 3.0, 6.0)),
+        roll=_angle(_sine(30.0, 10.0)),
+        tilt=4.0 * DEG,
     ),
     Scenario(
         "level",

@@ -1,6 +1,30 @@
 """The step methods by name, in the order of the command line (`plan` sees the whole flight: `solver.planner`)."""
 
-from solver.methods import alm, exact
+from solver.methods import (
+    alm,
+    clamped,
+    dwln,
+    exact,
+    fixed_joint,
+    follow_up,
+    gradient_projection,
+    lagrange,
+    three_axis,
+    weighted,
+)
 from solver.methods.base import StepMethod
 
-METHODS: dict[str, StepMethod] = {method.name: method for method in (exact.METHOD, alm.METHOD)}
+_MODULES = (
+    exact,
+    alm,
+    dwln,
+    lagrange,
+    weighted,
+    gradient_projection,
+    fixed_joint,
+    clamped,
+    follow_up,
+    three_axis,
+)
+
+METHODS: dict[str, StepMethod] = {module.METHOD.name: module.METHOD for module in _MODULES}

@@ -1,7 +1,7 @@
 """`three_axis`: the Euler angles themselves, to show the singularity that the fourth axis removes (METHODS, section 7).
 
-Source: the vertical (yaw, pitch, roll) and horizontal (pitch, yaw, roll) three-axis tables that Zhao 2025, section 1,
-and Lin 2022, section 1, compare with; singular where the second angle is +-90 deg. A four-axis rig is used as one by
+Source: the vertical (yaw, pitch, roll) and horizontal (pitch, yaw, roll) three-axis tables that Zhao 2025 and Lin 2022
+compare with (METHODS, section 2); singular where the second angle is +-90 deg. A four-axis rig is used as one by
 holding its middle frame at zero: base, outer and inner then are the three axes. No limits are looked at.
 """
 
@@ -90,9 +90,9 @@ def _stepper(rig: Rig, options: ThreeAxisOptions, start: Array | None, first: Ar
     return _ThreeAxisStepper(rig, start)
 
 
-THREE_AXIS = StepMethod(
+METHOD = StepMethod(
     name="three_axis",
-    source="Euler angles Y-Z-X (vertical) and Z-Y-X (horizontal); Zhao 2025, section 1; Lin 2022, section 1",
+    source="Euler angles Y-Z-X (vertical) and Z-Y-X (horizontal), the three-axis tables of Zhao 2025 and Lin 2022",
     claims_limits=False,
     options=ThreeAxisOptions,
     stepper=_stepper,

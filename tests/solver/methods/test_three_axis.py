@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from solver.attitude import dcm_from_euler, dcm_from_quaternion
-from solver.methods.three_axis import THREE_AXIS, ThreeAxisOptions
+from solver.methods.three_axis import METHOD, ThreeAxisOptions
 from solver.rig import builtin_rigs
 from solver.scenarios import SCENARIOS, random_flight
 
@@ -15,7 +15,7 @@ NAMES = {0: "X", 1: "Y", 2: "Z"}
 
 
 def run(rig: str, C: NDArray[np.float64], start: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-    stepper = THREE_AXIS.stepper(RIGS[rig], ThreeAxisOptions(), start, C[0])
+    stepper = METHOD.stepper(RIGS[rig], ThreeAxisOptions(), start, C[0])
     return stepper.block(np.arange(len(C)) / 1000.0, C).angles
 
 
@@ -75,6 +75,6 @@ def test_start_chooses_the_set_and_the_turns() -> None:
 
 def test_blocks_do_not_matter() -> None:
     C = dcm_from_quaternion(SCENARIOS["double_loop"].quaternion)
-    stepper = THREE_AXIS.stepper(RIGS["vertical-3"], ThreeAxisOptions(), None, C[0])
+    stepper = METHOD.stepper(RIGS["vertical-3"], ThreeAxisOptions(), None, C[0])
     parts = [stepper.block(np.arange(1.0), C[k : k + 1]).angles for k in range(500)]
     np.testing.assert_array_equal(np.vstack(parts), run("vertical-3", C[:500]))
