@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from solver._jit import kernel
 from solver.charts import project
 from solver.kinematics import jacobian, null_vector, payload_attitude, rotation_error
-from solver.limits import ACCELERATION, HOME, WEIGHT, Codes, approach_rate, inside, limit_box, tolerances
+from solver.limits import ACCELERATION, HOME, MAX, MIN, WEIGHT, Codes, approach_rate, inside, limit_box, tolerances
 from solver.solution import EXACT
 from solver.step import box_least_squares, clamp, null_interval, squared_damping
 
@@ -38,21 +38,28 @@ SHIFT = 1e-7  # damping of the least squares relative to the Jacobian's squares:
 
 
 @kernel
-def wish(table: Array, d: Array, h: float, avoidance: float, homing: float, out: Array) -> None:
-    """out <- the increment the frames would make of their own [rad]: away from the singularity, toward home.
+def wish(table: Array, d: Array, h: float, gains: Array, out: Array) -> None:
+    """out <- the increment the frames would make of their own over `h` [rad], by the first three gains.
 
-    avoidance [rad/s], homing [1/s]. The first is the gradient of m / (m + 0.1) times it, m = sin^2 d2 + cos^2 d3.
+    avoidance [rad/s]: away from the singularity, the gradient of 1/2 log (m + 0.1), m = sin^2 d2 + cos^2 d3.
+    centring [rad/s]: away from the end stops, the cube of the distance from the middle of the range over its half.
+    homing [1/s]: toward home.
     """
+    avoidance = gains[0]
     for i in range(4):
-        out[i] = -homing * h * (d[i] - table[HOME, i]) if homing > 0.0 else 0.0
+        out[i] = -gains[2] * h * (d[i] - table[HOME, i]) if gains[2] > 0.0 else 0.0
+        half = 0.5 * (table[MAX, i] - table[MIN, i])
+        if gains[1] > 0.0 and half > 0.0 and half < np.inf:
+            off = (d[i] - table[MIN, i]) / half - 1.0
+            out[i] -= gains[1] * h * off * off * off
     if avoidance > 0.0:
         s2 = math.sin(d[1])
         c2 = math.cos(d[1])
         s3 = math.sin(d[2])
         c3 = math.cos(d[2])
-        gain = 2.0 * avoidance * h / (s2 * s2 + c3 * c3 + 0.1)
-        out[1] += gain * s2 * c2 / table[WEIGHT, 1]
-        out[2] -= gain * c3 * s3 / table[WEIGHT, 2]
+        gain = avoidance * h / (s2 * s2 + c3 * c3 + 0.1)
+        out[1] += gain * s2 * c2
+        out[2] -= gain * c3 * s3
 
 
 @kernel

@@ -63,7 +63,7 @@ class AlmOptions:
 
     penalty: r of the first iteration; growth: beta, its factor from one to the next; max_penalty: where it stops
     growing; residual: |h| [rad] and complementarity at which the iteration stops; max_iterations: the cap.
-    avoidance [rad/s], homing [1/s], recovery: as in `ExactOptions`.
+    avoidance, centring [rad/s], homing [1/s], recovery: as in `ExactOptions`; zero gains are the paper's method.
     """
 
     mode: Mode = Mode.EXACT
@@ -73,6 +73,7 @@ class AlmOptions:
     residual: float = 1e-12
     max_iterations: int = 30
     avoidance: float = 0.0
+    centring: float = 0.0
     homing: float = 0.0
     recovery: float = 0.5
 
@@ -88,6 +89,7 @@ class AlmOptions:
             ("residual", 1e-15, 1.0),
             ("max_iterations", 1, 1000),
             ("avoidance", 0.0, 1e6),
+            ("centring", 0.0, 1e6),
             ("homing", 0.0, 1e6),
             ("recovery", 1e-6, 1.0),
         ):
@@ -175,7 +177,7 @@ def alm_block(
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 
-    gains: avoidance, homing, recovery; tuning: as in `multiplier_step`; feedback: close the loop; exact: project.
+    gains: avoidance, centring, homing, recovery; tuning: as in `multiplier_step`; feedback: close the loop; exact: project.
     """
     work = np.empty((ROWS, 4))
     room = np.empty((MULTIPLIER_ROWS, 5))
@@ -197,10 +199,10 @@ def alm_block(
         else:
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
-            wish(table, d, h, gains[0], gains[1], work[WISH])
+            wish(table, d, h, gains, work[WISH])
             on_target = True
             if feedback:
-                on_target = goal(table, axes, state, target, C, h, gains[2], F, G, e)
+                on_target = goal(table, axes, state, target, C, h, gains[3], F, G, e)
             else:
                 rotation_error(C, target, e)
             jacobian(axes, d, J)
@@ -242,7 +244,7 @@ class AlmStepper:
         self._rig = rig
         self._mode = options.mode
         self._table = limit_table(rig)
-        self._gains = np.array([options.avoidance, options.homing, options.recovery])
+        self._gains = np.array([options.avoidance, options.centring, options.homing, options.recovery])
         self._tuning = np.array(
             [options.penalty, options.growth, options.max_penalty, options.residual, options.max_iterations]
         )

@@ -39,19 +39,23 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ExactOptions:
-    """What is left to choose. Raises `MethodError` where a gain is negative or not a number.
+    """How the redundant frame is used. Raises `MethodError` where a gain is negative or not a number.
 
-    avoidance: how fast the frames leave the singularity of their own, along the self-motion [rad/s].
-    homing: how fast they return home [1/s]; 0 is the minimum-norm step of the literature.
-    recovery: share of the smallest frame acceleration that brakes the return to the attitude after a limited sample.
+    The pose nearest (in the rig's weights) to the last one plus these movements along the self-motion is taken; with
+    all of them zero it is the minimum-norm step of the literature. The defaults fly more of the random flights than
+    that (docs/decisions/0010-null-space-defaults.md) and take a level turn past the singularity.
+    avoidance: how fast the frames leave the singularity [rad/s]; centring: how fast they leave their end stops [rad/s];
+    homing: how fast they return home [1/s]; recovery: share of the smallest frame acceleration that brakes the return
+    to the attitude after a limited sample.
     """
 
-    avoidance: float = 0.0
+    avoidance: float = 1.0
+    centring: float = 2.0
     homing: float = 0.0
     recovery: float = 0.5
 
     def __post_init__(self) -> None:
-        for name in ("avoidance", "homing"):
+        for name in ("avoidance", "centring", "homing"):
             if not 0.0 <= getattr(self, name) < np.inf:
                 raise MethodError(f"option {name} = {getattr(self, name)!r}: expected a number, 0 or more")
         if not 0.0 < self.recovery <= 1.0:
@@ -74,7 +78,7 @@ def exact_block(
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 
-    gains: avoidance, homing, recovery.
+    gains: avoidance, centring, homing, recovery.
     """
     work = np.empty((ROWS, 4))
     J = np.empty((3, 4))
@@ -95,8 +99,8 @@ def exact_block(
         else:
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
-            wish(table, d, h, gains[0], gains[1], work[WISH])
-            on_target = goal(table, axes, state, target, C, h, gains[2], F, G, e)
+            wish(table, d, h, gains, work[WISH])
+            on_target = goal(table, axes, state, target, C, h, gains[3], F, G, e)
             jacobian(axes, d, J)
             volume = null_vector(J, work[NULL])
             quadratic_step(
@@ -119,7 +123,7 @@ class ExactStepper:
             raise MethodError(f"exact needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
         self._rig = rig
         self._table = limit_table(rig)
-        self._gains = np.array([options.avoidance, options.homing, options.recovery])
+        self._gains = np.array([options.avoidance, options.centring, options.homing, options.recovery])
         self._state = new_state(*start_pose(rig, attitude, start))
         self._target = np.array(attitude, order="C")
 
