@@ -34,21 +34,25 @@ def base_chart(horizontal: bool, C: Array, d1: float, branch: float, d: Array) -
     # M = V Ry(d1)^T, V the attitude as the vertical rig sees it: rows and columns (x, z, -y) of the horizontal one's.
     if horizontal:
         v00, v01, v02 = C[0, 0], C[0, 2], -C[0, 1]
-        v10, v12 = C[2, 0], -C[2, 1]
-        v20, v22 = -C[1, 0], C[1, 1]
+        v10, v11, v12 = C[2, 0], C[2, 2], -C[2, 1]
+        v20, v21, v22 = -C[1, 0], -C[1, 2], C[1, 1]
     else:
         v00, v01, v02 = C[0, 0], C[0, 1], C[0, 2]
-        v10, v12 = C[1, 0], C[1, 2]
-        v20, v22 = C[2, 0], C[2, 2]
+        v10, v11, v12 = C[1, 0], C[1, 1], C[1, 2]
+        v20, v21, v22 = C[2, 0], C[2, 1], C[2, 2]
     m00 = v00 * c - v02 * s
     m01 = v01
     m02 = v00 * s + v02 * c
-    m12 = v10 * s + v12 * c
-    m22 = v20 * s + v22 * c
+    m10 = v10 * c - v12 * s
+    m20 = v20 * c - v22 * s
     d[0] = d1
-    d[2] = math.atan2(-m02, branch * math.hypot(m00, m01))
-    d[1] = math.atan2(branch * m01, branch * m00)
-    d[3] = math.atan2(branch * m12, branch * m22)
+    cos_d3 = branch * math.hypot(m00, m01)
+    d[2] = math.atan2(-m02, cos_d3)
+    d[1] = 0.0 if cos_d3 == 0.0 else math.atan2(branch * m01, branch * m00)
+    # d4 with d2 undone, M Rz(d2)^T = Rx(d4) Ry(d3): exact for any d2, so also on the fold, where d2 is not determined.
+    c = 1.0 if cos_d3 == 0.0 else m00 / cos_d3
+    s = 0.0 if cos_d3 == 0.0 else m01 / cos_d3
+    d[3] = math.atan2(m20 * s - v21 * c, v11 * c - m10 * s)
     if horizontal:
         d[1] = -d[1]
 
@@ -63,22 +67,26 @@ def inner_chart(horizontal: bool, C: Array, d4: float, branch: float, d: Array) 
     s = math.sin(d4)
     # N = Rx(d4)^T V, V as in the base chart.
     if horizontal:
-        v01 = C[0, 2]
+        v00, v02 = C[0, 0], -C[0, 1]
         v10, v11, v12 = C[2, 0], C[2, 2], -C[2, 1]
         v20, v21, v22 = -C[1, 0], -C[1, 2], C[1, 1]
     else:
-        v01 = C[0, 1]
+        v00, v02 = C[0, 0], C[0, 2]
         v10, v11, v12 = C[1, 0], C[1, 1], C[1, 2]
         v20, v21, v22 = C[2, 0], C[2, 1], C[2, 2]
     n10 = c * v10 - s * v20
     n11 = c * v11 - s * v21
     n12 = c * v12 - s * v22
-    n01 = v01
-    n21 = s * v11 + c * v21
+    n20 = s * v10 + c * v20
+    n22 = s * v12 + c * v22
     d[3] = d4
-    d[1] = math.atan2(branch * math.hypot(n10, n12), n11)
-    d[0] = math.atan2(branch * n12, -branch * n10)
-    d[2] = math.atan2(branch * n21, branch * n01)
+    sin_d2 = branch * math.hypot(n10, n12)
+    d[1] = math.atan2(sin_d2, n11)
+    d[0] = 0.0 if sin_d2 == 0.0 else math.atan2(branch * n12, -branch * n10)
+    # d3 with d1 undone, N Ry(d1)^T = Ry(d3) Rz(d2): exact for any d1, so also on the fold, where d1 is not determined.
+    c = 1.0 if sin_d2 == 0.0 else -n10 / sin_d2
+    s = 0.0 if sin_d2 == 0.0 else n12 / sin_d2
+    d[2] = math.atan2(-(v00 * s + v02 * c), n20 * s + n22 * c)
     if horizontal:
         d[1] = -d[1]
 
