@@ -1,0 +1,183 @@
+"""Sessions: the snapshot, commands, the lease, stop and E-stop on lanes of their own, alarms."""
+
+import asyncio
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body
+
+from server.api.problems import ApiError
+from server.api.services import Services, ServicesDep, WhoDep
+from server.api.session_view import lease_out, session_out
+from server.api.wire_session import AlarmOut, CommandIn, CommandOut, LeaseIn, LeaseOut, LeaseToken, Load, SessionOut
+from server.runtime.host import HostError, RefusedError, RigHost
+from server.runtime.wire import Reply
+from server.session.lease import LeaseToken as Token
+
+router = APIRouter(prefix="/rigs/{rig}", tags=["session"])
+
+REFUSED: dict[int | str, dict[str, Any]] = {
+    409: {"description": "The session refuses; nothing has changed. Names state, command and what is allowed"},
+    503: {"description": "The rig process does not answer"},
+}
+# Codes of the session's refusals that are not about its state.
+_STATUS = {"lease_needed": 403, "lease_lost": 403, "rig_unreachable": 503}
+
+
+@router.get("/session")
+async def get_session(rig: str, services: ServicesDep) -> SessionOut:
+    """The session as of now."""
+    await _known(services, rig)
+    return session_out(services.hosts, rig, services.settings.rig_rate_hz)
+
+
+@router.get("/alarms")
+async def get_alarms(rig: str, services: ServicesDep) -> list[AlarmOut]:
+    """The rig's alarms, standing and past, the newest last."""
+    await _known(services, rig)
+    return session_out(services.hosts, rig, services.settings.rig_rate_hz).history
+
+
+@router.post("/commands", responses=REFUSED)
+async def command(rig: str, body: Annotated[CommandIn, Body()], services: ServicesDep, who: WhoDep) -> CommandOut:
+    """Command the session. Needs the lease, but for stop and estop."""
+    if body.command in ("stop", "estop"):
+        return await _lane(services, rig, body.command, who)
+    host = await _host(services, rig)
+    args: dict[str, Any] = body.args.model_dump(exclude_none=True)
+    if isinstance(body, Load):
+        args = await _load_args(services, rig, body.args.plan)
+    token = None if body.lease is None else Token(body.lease.epoch, body.lease.sequence)
+    reply = await host.command(body.command, args, who, token)
+    await _audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    return _answer(body.command, reply)
+
+
+@router.post("/stop", responses=REFUSED)
+async def stop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
+    """Brake every frame inside its limits. Needs no lease and waits for no other command."""
+    return await _lane(services, rig, "stop", who)
+
+
+@router.post("/estop", responses=REFUSED)
+async def estop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
+    """Brake as fast as the limits allow, then disable the drive. Needs no lease and waits for no other command."""
+    return await _lane(services, rig, "estop", who)
+
+
+@router.post("/lease", responses=REFUSED)
+async def lease(rig: str, services: ServicesDep, who: WhoDep, body: LeaseIn | None = None) -> LeaseOut:
+    """Take, request, grant or renew the lease."""
+    body = body or LeaseIn()
+    return await _lease(services, await _host(services, rig), body.action, who, body.to)
+
+
+@router.delete("/lease", responses=REFUSED)
+async def release_lease(rig: str, services: ServicesDep, who: WhoDep) -> LeaseOut:
+    """Give the lease up."""
+    return await _lease(services, await _host(services, rig), "release", who, None)
+
+
+async def _lane(services: Services, rig: str, word: str, who: str) -> CommandOut:
+    host = services.hosts.get(rig)  # nothing to wait for comes before it
+    if host is None:
+        await _known(services, rig)
+        raise ApiError(
+            409,
+            "illegal-command",
+            f"{word} is not possible: no rig process runs",
+            state="disconnected",
+            command=word,
+            allowed=["connect"],
+        )
+    reply = await host.command(word, {}, who, None)
+    await _audit(services, rig, who, word, {}, None, reply)
+    return _answer(word, reply)
+
+
+async def _lease(services: Services, host: RigHost, action: str, who: str, to: str | None) -> LeaseOut:
+    before = host.snapshot().state
+    try:
+        held = await host.lease(action, who, to)
+    except RefusedError as refused:
+        await _audit(services, host.name, who, f"lease {action}", {}, None, refused.reply)
+        raise _refusal(refused.reply) from None
+    if action != "renew":  # every few seconds; it says nothing that the next command does not
+        reply = Reply(ok=True, state_before=before, state_after=host.snapshot().state, revision=host.revision)
+        token = LeaseToken(epoch=held.epoch, sequence=held.sequence)
+        await _audit(services, host.name, who, f"lease {action}", {} if to is None else {"to": to}, token, reply)
+    return lease_out(held)
+
+
+async def _known(services: Services, rig: str) -> None:
+    await asyncio.to_thread(services.rigs.get, rig)
+
+
+async def _host(services: Services, rig: str) -> RigHost:
+    try:
+        return await services.hosts.ensure(rig)
+    except HostError as error:
+        raise ApiError(503, "rig-process", str(error)) from None
+
+
+async def _load_args(services: Services, rig: str, plan: str) -> dict[str, Any]:
+    row = await asyncio.to_thread(services.plans.get, plan)
+    result = row.result or {}
+    why = None
+    if row.rig != rig:
+        why = f"plan {plan} is for rig {row.rig}, not {rig}"
+    elif row.status != "done":
+        why = f"plan {plan} is {row.status}"
+    elif result.get("refusal"):
+        why = f"plan {plan} cannot be flown: {result['refusal']}"
+    if why is not None:
+        raise ApiError(409, "not-flyable", why, state=services.hosts.state(rig), command="load")
+    return {"plan_folder": str(services.plans.folder(plan).resolve())}
+
+
+def _answer(word: str, reply: Reply) -> CommandOut:
+    if not reply.ok:
+        raise _refusal(reply)
+    return CommandOut.model_validate(
+        {
+            "command": word,
+            "state_before": reply.state_before,
+            "state_after": reply.state_after,
+            "revision": reply.revision,
+        }
+    )
+
+
+def _refusal(reply: Reply) -> ApiError:
+    error = reply.error
+    if error is None:
+        return ApiError(503, "rig-unreachable", "the rig process refused without a reason")
+    return ApiError(
+        _STATUS.get(error.code, 409),
+        error.code.replace("_", "-"),
+        error.message,
+        state=error.state,
+        command=error.command,
+        allowed=error.allowed,
+    )
+
+
+async def _audit(
+    services: Services,
+    rig: str,
+    who: str,
+    word: str,
+    args: dict[str, Any],
+    token: LeaseToken | None,
+    reply: Reply,
+) -> None:
+    await asyncio.to_thread(
+        services.audit.write,
+        who=who,
+        rig=rig,
+        command=word,
+        args=args,
+        lease=None if token is None else (token.epoch, token.sequence),
+        states=(reply.state_before, reply.state_after),
+        accepted=reply.ok,
+        detail=None if reply.error is None else f"{reply.error.code}: {reply.error.message}",
+    )

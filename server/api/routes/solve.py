@@ -1,0 +1,138 @@
+"""Solving without a session: POST /solve for a batch, the WebSocket /solve for a stream."""
+
+import asyncio
+import json
+import time
+from typing import Any
+
+import numpy as np
+from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from pydantic import TypeAdapter
+
+from server.api.batch import attitudes, limited_list
+from server.api.problems import ApiError, problem_of
+from server.api.services import Services, ServicesDep
+from server.api.wire_plans import ReportOut
+from server.api.wire_solve import (
+    Opened,
+    OpenSolve,
+    Solved,
+    SolveIn,
+    SolveMessageIn,
+    SolveOut,
+    SolveProblem,
+    SolveSamples,
+)
+from server.store.errors import NotFoundError
+from server.store.options import method_options
+from server.store.report import make_report
+from solver.errors import MethodError, SolverError
+from solver.methods import METHODS
+from solver.methods.base import Stepper
+from solver.rig import Rig
+from solver.solve import check_flight, check_start, solve
+from solver.verify import attitude_errors, payload_attitudes, verify
+
+router = APIRouter(tags=["solve"])
+_INCOMING: TypeAdapter[SolveMessageIn] = TypeAdapter(SolveMessageIn)
+SMALL = 64  # samples that are solved in the event loop itself: a thread's hand-over would take longer
+
+
+@router.post("/solve")
+async def solve_batch(body: SolveIn, services: ServicesDep) -> SolveOut:
+    """A batch of attitudes in, frame angles and errors out; no session needed."""
+    most = services.settings.max_solve_samples
+    if len(body.time_s) > most:
+        raise ApiError(413, "too-large", f"{len(body.time_s)} samples: this server solves up to {most} at once")
+    entry = await asyncio.to_thread(services.rigs.get, body.rig)
+    return await asyncio.to_thread(_solve, body, entry.rig)
+
+
+def _solve(body: SolveIn, rig: Rig) -> SolveOut:
+    at, C = attitudes(body)
+    solution = solve(
+        at,
+        C,
+        rig,
+        method=body.method,
+        options=method_options(body.method, dict(body.options)),
+        start=None if body.start_deg is None else np.deg2rad(np.array(body.start_deg)),
+        clock=time.perf_counter,
+    )
+    report = make_report(solution, verify(at, solution.angles, rig, C))
+    return SolveOut.model_construct(
+        time_s=body.time_s,
+        angles_deg=[tuple(row) for row in np.rad2deg(solution.angles).tolist()],
+        error_deg=np.rad2deg(solution.error).tolist(),
+        limited=limited_list(solution.limited),
+        report=ReportOut(**report),
+    )
+
+
+@router.websocket("/solve")
+async def solve_stream(socket: WebSocket, services: ServicesDep) -> None:
+    """`open` names rig and method; each `samples` is answered by a `solved` with the same number of rows."""
+    await socket.accept()
+    flight: _Flight | None = None
+    try:
+        while True:
+            text = await socket.receive_text()
+            try:
+                message = _INCOMING.validate_python(json.loads(text))
+                if isinstance(message, OpenSolve):
+                    flight = await asyncio.to_thread(_Flight, services, message)
+                    answer: Any = Opened(rig=message.rig, method=message.method)
+                elif flight is None:
+                    raise ApiError(422, "not-open", "expected an open message before samples")
+                elif len(message.time_s) <= SMALL:
+                    answer = flight.solve(message)
+                else:
+                    answer = await asyncio.to_thread(flight.solve, message)
+            except (ApiError, SolverError, NotFoundError, ValueError) as error:
+                answer = SolveProblem(problem=problem_of(_readable(error)))
+            await socket.send_text(answer.model_dump_json())
+    except WebSocketDisconnect:
+        return
+
+
+class _Flight:
+    """A flight in progress on one connection. A message that is refused leaves it as it was."""
+
+    def __init__(self, services: Services, message: OpenSolve) -> None:
+        self._rig = services.rigs.get(message.rig).rig
+        self._most = services.settings.max_solve_samples
+        if message.method not in METHODS:
+            known = ", ".join(METHODS)
+            raise MethodError(f"method {message.method!r} cannot be streamed: expected one of {known}")
+        self._method = METHODS[message.method]
+        options = method_options(message.method, dict(message.options))
+        self._options = self._method.options() if options is None else options
+        start = None if message.start_deg is None else np.deg2rad(np.array(message.start_deg))
+        self._start = check_start(start, self._rig)
+        self._stepper: Stepper | None = None
+        self._last = -np.inf
+
+    def solve(self, message: SolveSamples) -> Solved:
+        """Angles and errors of the next samples."""
+        if len(message.time_s) > self._most:
+            raise ApiError(413, "too-large", f"{len(message.time_s)} samples in one message, at most {self._most}")
+        at, C = check_flight(*attitudes(message))
+        if not at[0] > self._last:
+            raise ApiError(422, "solver-input", f"time_s[0] = {at[0]:.9g}: expected a time after {self._last:.9g}")
+        if self._stepper is None:
+            self._stepper = self._method.stepper(self._rig, self._options, self._start, C[0])
+        block = self._stepper.block(at, C)
+        self._last = float(at[-1])
+        error, _ = attitude_errors(payload_attitudes(self._rig, block.angles), C)
+        return Solved.model_construct(
+            time_s=message.time_s,
+            angles_deg=[tuple(row) for row in np.rad2deg(block.angles).tolist()],
+            error_deg=np.rad2deg(error).tolist(),
+            limited=limited_list(block.limited),
+        )
+
+
+def _readable(error: Exception) -> Exception:
+    if isinstance(error, json.JSONDecodeError):
+        return ApiError(422, "validation", f"expected a JSON message: {error}")
+    return error

@@ -1,0 +1,51 @@
+"""What every wire model shares, and the problem document (RFC 9457).
+
+The surface is in degrees and seconds with the unit in the name; arrays of frames are base, outer, middle, inner.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Four = tuple[float, float, float, float]
+FrameName = Literal["base", "outer", "middle", "inner"]
+LimitName = Literal["position", "rate", "acceleration"]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$")]
+Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+
+
+class Wire(BaseModel):
+    """A message: frozen, and strict about what it does not know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class FieldProblem(Wire):
+    """One thing wrong with a request: where, which value, what was expected."""
+
+    where: str = Field(description="Path in the body, query or header, or the column of a file")
+    message: str
+    value: str | None = None
+    line: int | None = Field(default=None, description="Line of the file, the first is 1")
+    expected: str | None = None
+
+
+class Problem(Wire):
+    """Every error answer, as application/problem+json."""
+
+    type: str = Field(description="urn:fullpose:problem:<code>; the code is stable, the texts are not")
+    title: str
+    status: int
+    detail: str
+    instance: str | None = None
+    errors: list[FieldProblem] = Field(default=[])
+    state: str | None = Field(default=None, description="Session state, where a command was refused")
+    command: str | None = None
+    allowed: list[str] | None = Field(default=None, description="Commands the state allows")
+
+
+class Notice(Wire):
+    """Something accepted that a person should look at."""
+
+    code: str
+    message: str

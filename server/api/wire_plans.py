@@ -1,0 +1,155 @@
+"""Plans, their reports and jobs on the wire."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import Field
+
+from server.api.wire import FieldProblem, Four, FrameName, LimitName, Name, Notice, Sha256, Wire
+
+JobStatus = Literal["queued", "running", "done", "failed", "cancelled", "interrupted"]
+OptionValue = bool | int | float | str
+
+
+class PlanIn(Wire):
+    """What to plan. Without `start_deg` the start pose is free."""
+
+    trajectory: Sha256
+    rig: Name
+    method: str = "plan"
+    options: dict[str, OptionValue] = Field(default={})
+    start_deg: Four | None = None
+
+
+class ProgressOut(Wire):
+    """How far a job is."""
+
+    phase: str
+    done: int
+    total: int
+    fraction: float = Field(ge=0.0, le=1.0)
+
+
+class IterationsOut(Wire):
+    median: float
+    max: int
+
+
+class StepTimeOut(Wire):
+    median: float
+    p99: float
+
+
+class PeakOut(Wire):
+    position_deg: float
+    rate_deg_s: float
+    acceleration_deg_s2: float
+
+
+class PeaksOut(Wire):
+    base: PeakOut | None = None
+    outer: PeakOut
+    middle: PeakOut
+    inner: PeakOut
+
+
+class ViolationOut(Wire):
+    """A run of samples beyond a limit, at its worst one."""
+
+    time_s: float
+    frame: FrameName
+    limit: LimitName
+    value: float = Field(description="deg, deg/s or deg/s^2, by the limit")
+    samples: int = Field(description="Length of the run")
+
+
+class BlockingOut(Wire):
+    time_s: float
+    frame: FrameName
+    limit: LimitName
+
+
+class ReportOut(Wire):
+    """The report of `fullpose solve --report`, key by key; keys may be added, not renamed."""
+
+    method: str
+    rig: str
+    samples: int
+    feasible: bool
+    max_error_deg: float
+    max_matrix_error: float
+    iterations: IterationsOut
+    step_us: StepTimeOut | None
+    solve_s: float | None
+    peak: PeaksOut
+    limit_violations: list[ViolationOut]
+    limit_violation_samples: int = Field(description="All of them; the list is cut at a thousand runs")
+    limited_samples: int
+    limited_by: list[dict[str, str | int]] = Field(description="frame, limit, samples")
+    blocking: BlockingOut | None
+    warnings: list[Notice] = Field(default=[])
+
+
+class JobErrorOut(Wire):
+    """Why a job failed."""
+
+    code: str
+    message: str
+    errors: list[FieldProblem] = Field(default=[])
+
+
+class PlanOut(Wire):
+    """A plan and its job. `flyable` plans can be loaded; the others say why not in `refusal`."""
+
+    id: str
+    status: JobStatus
+    progress: ProgressOut
+    trajectory: Sha256
+    trajectory_name: str
+    rig: Name
+    rig_hash: str
+    method: str
+    options: dict[str, OptionValue]
+    start_deg: Four | None
+    created_at: datetime
+    started_at: datetime | None
+    finished_at: datetime | None
+    error: JobErrorOut | None
+    feasible: bool | None
+    flyable: bool
+    refusal: str | None
+    plan_hash: str | None
+    rate_hz: float | None
+    resampling: str | None = Field(description="How the flight was brought to the rig's rate")
+    samples: int | None
+    duration_s: float | None
+    lead_in_s: float | None
+    lead_out_s: float | None
+    report: ReportOut | None
+
+
+class PlanSamples(Wire):
+    """A thinned plan for plots, lead-in and lead-out included; time zero is the flight's first sample.
+
+    Error and attitude are null in the leads. Peaks of every column are kept by the thinning.
+    """
+
+    id: str
+    samples: int
+    time_s: list[float]
+    angles_deg: dict[FrameName, list[float]]
+    rates_deg_s: dict[FrameName, list[float]]
+    accelerations_deg_s2: dict[FrameName, list[float]]
+    error_deg: list[float | None]
+    q: list[Four | None]
+    lead_in_s: float
+    lead_out_s: float
+
+
+class MethodOut(Wire):
+    """A method the server can solve with."""
+
+    name: str
+    source: str
+    claims_limits: bool
+    options: dict[str, OptionValue] = Field(description="Names and defaults")

@@ -1,0 +1,63 @@
+"""What happened, on the wire: runs, audit, and the server's own health."""
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import Field
+
+from server.api.wire import Wire
+from server.api.wire_session import RigHealth, StateName
+
+
+class RunOut(Wire):
+    """A recorded run."""
+
+    id: str
+    rig: str
+    plan_id: str | None
+    plan_hash: str | None
+    started_at: datetime | None
+    ended_at: datetime | None
+    duration_s: float | None
+    samples: int | None
+    lost_samples: int | None = Field(description="Missing sequence numbers")
+    bytes: int
+    complete: bool = Field(description="False while it is being written, or where the recorder was cut off")
+    max_solve_error_deg: float | None
+    max_tracking_error_deg: float | None
+
+
+class AuditOut(Wire):
+    """One command, accepted or refused."""
+
+    id: int
+    at: datetime
+    who: str
+    rig: str
+    command: str
+    args: dict[str, Any]
+    lease_epoch: int | None
+    lease_sequence: int | None
+    state_before: StateName
+    state_after: StateName
+    accepted: bool
+    detail: str | None
+
+
+class ServerLimits(Wire):
+    max_upload_bytes: int
+    max_solve_samples: int
+
+
+class HealthOut(Wire):
+    """`status` is degraded where a rig process, a recorder or the planner does not answer."""
+
+    status: Literal["ok", "degraded"]
+    version: str
+    server_time: float
+    uptime_s: float
+    authenticated: bool = Field(description="False: no users are configured, anyone who reaches the port may command")
+    planner: Literal["idle", "busy", "starting", "stopped"]
+    limits: ServerLimits
+    rigs: dict[str, RigHealth]
+    warnings: list[str]

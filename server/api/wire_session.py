@@ -1,0 +1,253 @@
+"""The session on the wire: commands as a tagged union, the lease, the snapshot."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from server.api.wire import Four, FrameName, Wire
+
+StateName = Literal[
+    "disconnected",
+    "idle",
+    "ready",
+    "armed",
+    "positioning",
+    "running",
+    "held",
+    "stopping",
+    "live",
+    "estopped",
+    "faulted",
+]
+Severity = Literal["warning", "fault", "emergency"]
+
+
+class LeaseToken(Wire):
+    """Proof of holding the lease: its epoch, and a sequence that grows with every command."""
+
+    epoch: int = Field(ge=0)
+    sequence: int = Field(ge=0)
+
+
+class NoArgs(Wire):
+    """A command without arguments."""
+
+
+class LoadArgs(Wire):
+    plan: str = Field(description="Id of a flyable plan of this rig")
+
+
+class MoveArgs(Wire):
+    target_deg: Four
+
+
+class JogArgs(Wire):
+    frame: FrameName
+    rate_deg_s: float = Field(description="Zero stops the jog")
+
+
+class AcknowledgeArgs(Wire):
+    alarms: list[int] | None = Field(default=None, description="Numbers; null: all that stand")
+
+
+class _Command(Wire):
+    lease: LeaseToken | None = None
+
+
+class Connect(_Command):
+    command: Literal["connect"]
+    args: NoArgs = NoArgs()
+
+
+class Load(_Command):
+    command: Literal["load"]
+    args: LoadArgs
+
+
+class Arm(_Command):
+    command: Literal["arm"]
+    args: NoArgs = NoArgs()
+
+
+class Start(_Command):
+    command: Literal["start"]
+    args: NoArgs = NoArgs()
+
+
+class Hold(_Command):
+    command: Literal["hold"]
+    args: NoArgs = NoArgs()
+
+
+class Resume(_Command):
+    command: Literal["resume"]
+    args: NoArgs = NoArgs()
+
+
+class Stop(_Command):
+    command: Literal["stop"]
+    args: NoArgs = NoArgs()
+
+
+class Move(_Command):
+    command: Literal["move"]
+    args: MoveArgs
+
+
+class Home(_Command):
+    command: Literal["home"]
+    args: NoArgs = NoArgs()
+
+
+class Jog(_Command):
+    command: Literal["jog"]
+    args: JogArgs
+
+
+class GoLive(_Command):
+    command: Literal["go_live"]
+    args: NoArgs = NoArgs()
+
+
+class Disarm(_Command):
+    command: Literal["disarm"]
+    args: NoArgs = NoArgs()
+
+
+class Unload(_Command):
+    command: Literal["unload"]
+    args: NoArgs = NoArgs()
+
+
+class Estop(_Command):
+    command: Literal["estop"]
+    args: NoArgs = NoArgs()
+
+
+class Acknowledge(_Command):
+    command: Literal["acknowledge"]
+    args: AcknowledgeArgs = AcknowledgeArgs()
+
+
+class Reset(_Command):
+    command: Literal["reset"]
+    args: NoArgs = NoArgs()
+
+
+CommandIn = Annotated[
+    Connect
+    | Load
+    | Arm
+    | Start
+    | Hold
+    | Resume
+    | Stop
+    | Move
+    | Home
+    | Jog
+    | GoLive
+    | Disarm
+    | Unload
+    | Estop
+    | Acknowledge
+    | Reset,
+    Field(discriminator="command"),
+]
+
+
+class CommandOut(Wire):
+    """A command that was accepted: what the session was and is."""
+
+    command: str
+    state_before: StateName
+    state_after: StateName
+    revision: int
+
+
+class LeaseIn(Wire):
+    """take: when free or silent; takeover: by force, audited; request: ask the holder; grant: hand over; renew."""
+
+    action: Literal["take", "takeover", "request", "grant", "renew"] = "take"
+    to: str | None = Field(default=None, description="With grant: who of those who asked; null: the first")
+
+
+class LeaseOut(Wire):
+    """Who may command. `epoch` grows with every new holder; each command's sequence must be above `sequence`."""
+
+    holder: str | None
+    epoch: int
+    sequence: int
+    expires_s: float | None = Field(description="Until the holder counts as silent: the rig holds, stops, disarms")
+    requested_by: list[str]
+
+
+class PlanRef(Wire):
+    """The plan, or the live source, bound by load."""
+
+    plan_id: str
+    plan_hash: str
+    rig_hash: str
+    live: bool
+    name: str
+    duration_s: float | None
+
+
+class AlarmOut(Wire):
+    """A fault or warning, with its evidence; `value` and `limit` are in `unit`. `first` of a chain is its cause."""
+
+    number: int
+    code: str
+    severity: Severity
+    message: str
+    time_s: float = Field(description="Seconds since 1970, of the first occurrence")
+    frame: FrameName | None = None
+    value: float | None = None
+    limit: float | None = None
+    unit: str | None = None
+    first: bool = False
+    acknowledged_by: str | None = None
+    count: int = 1
+
+
+class RecorderOut(Wire):
+    """The recorder process of a rig."""
+
+    alive: bool
+    run: str = Field(description="Id of the run being written, or empty")
+    lost: int = Field(description="Samples that never reached the record")
+    lag: int = Field(description="Samples between the loop and the recorder")
+    bytes_written: int
+    free_bytes: int
+    error: str
+
+
+class RigHealth(Wire):
+    """How the rig process does; lateness over its whole life, by percentile."""
+
+    realtime: str = Field(description="Scheduling in words: real-time, or what is missing")
+    rate_hz: float
+    lateness_us: dict[str, float]
+    busy_us: float
+    ticks: int
+    deadline_misses: int
+    rig_alive: bool
+    rig_pid: int | None
+    heartbeat_age_s: float | None
+    recorder: RecorderOut | None
+
+
+class SessionOut(Wire):
+    """All an operator must know: state, what is allowed, who holds the lease, the plan, the alarms, health, pose."""
+
+    rig: str
+    state: StateName
+    revision: int
+    allowed: list[str]
+    lease: LeaseOut
+    plan: PlanRef | None
+    alarms: list[AlarmOut] = Field(description="Those that stand")
+    history: list[AlarmOut]
+    run_id: str | None
+    drive: str | None
+    health: RigHealth
+    pose_deg: Four | None

@@ -1,0 +1,114 @@
+"""Messages of the WebSocket /rigs/{rig}/stream, both ways, tagged by `type`.
+
+A binary telemetry frame is little-endian: magic u4 "FPT1", version u2, count u2, seq u8, server_time f8, dropped u8,
+then `count` records as `hello.record` describes them.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from server.api.wire import Problem, Wire
+from server.api.wire_session import SessionOut
+
+Topic = Literal["telemetry", "session"]
+Encoding = Literal["json", "binary"]
+
+
+class Subscribe(Wire):
+    """What the client wants; sent again, it replaces the earlier one."""
+
+    type: Literal["subscribe"]
+    topics: list[Topic] = Field(default=["telemetry", "session"])
+    rate_hz: float = Field(default=30.0, gt=0.0, le=1000.0, description="Frames a second, not samples")
+    encoding: Encoding = "json"
+    every_sample: bool = Field(default=False, description="All samples since the last frame, else only the newest")
+    since_seq: int | None = Field(default=None, ge=0, description="Resume after this sample; null: from now on")
+
+
+class Ping(Wire):
+    type: Literal["ping"]
+    t: float
+
+
+StreamIn = Annotated[Subscribe | Ping, Field(discriminator="type")]
+
+
+class RecordField(Wire):
+    """One field of the binary record."""
+
+    name: str
+    type: str = Field(description="NumPy type string, little-endian")
+    count: int
+    offset: int
+
+
+class Record(Wire):
+    """The binary record: its size in bytes and its fields."""
+
+    size: int
+    fields: list[RecordField]
+
+
+class Hello(Wire):
+    """First message of the server."""
+
+    type: Literal["hello"] = "hello"
+    schema_: Literal["fullpose.stream/1"] = Field(default="fullpose.stream/1", alias="schema")
+    server_time: float
+    rig: str
+    session: SessionOut
+    fields: list[str]
+    record: Record
+
+
+class Telemetry(Wire):
+    """Samples as columns. `seq` is the newest sample's; `dropped` counts what this client has missed so far."""
+
+    type: Literal["telemetry"] = "telemetry"
+    seq: int
+    server_time: float
+    dropped: int
+    sample_seq: list[int]
+    time_ns: list[int]
+    wall_ns: list[int]
+    state: list[int]
+    flags: list[int]
+    revision: list[int]
+    path_time_s: list[float | None]
+    path_scale: list[float | None]
+    demand: list[list[float | None]]
+    demand_rate: list[list[float | None]]
+    demand_acceleration: list[list[float | None]]
+    measured: list[list[float | None]]
+    measured_rate: list[list[float | None]]
+    target: list[list[float | None]]
+    solve_error_deg: list[float | None]
+    tracking_error_deg: list[float | None]
+    following_error_deg: list[list[float | None]]
+    margin: list[float | None]
+    lateness_us: list[float | None]
+    tick: list[int]
+
+
+class SessionChanged(Wire):
+    type: Literal["session"] = "session"
+    revision: int
+    server_time: float
+    session: SessionOut
+
+
+class Pong(Wire):
+    type: Literal["pong"] = "pong"
+    t: float
+    server_time: float
+
+
+class StreamProblem(Wire):
+    """A message of the client that was not understood; the stream goes on."""
+
+    type: Literal["problem"] = "problem"
+    problem: Problem
+
+
+StreamOut = Annotated[Hello | Telemetry | SessionChanged | Pong | StreamProblem, Field(discriminator="type")]

@@ -1,0 +1,175 @@
+"""The app factory: settings in, a FastAPI app out. What lives as long as the server is built in its lifespan."""
+
+import asyncio
+import fcntl
+import os
+from collections.abc import AsyncIterator, Callable
+from contextlib import AsyncExitStack, asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from fastapi import Depends, FastAPI
+from starlette.requests import HTTPConnection
+
+from server.api import openapi, problems
+from server.api.console import console
+from server.api.hosts import RigHosts
+from server.api.origin import OriginGuard
+from server.api.routes import audit, health, plans, rigs, runs, sessions, solve, stream, trajectories
+from server.api.services import Services
+from server.plan_folder import rig_hash
+from server.runtime.config import RigConfig
+from server.scene.proxy import router as scene_router
+from server.scene.scenes import SceneServer
+from server.settings import Settings
+from server.store.audit import AuditLog
+from server.store.database import Database
+from server.store.errors import StoreError
+from server.store.plan_queue import PlanQueue
+from server.store.planning_request import PlanRequest
+from server.store.plans import PlanStore
+from server.store.rig_file import RigStore
+from server.store.trajectories import TrajectoryStore
+from server.version import VERSION
+
+API = "/api/v1"
+DESCRIPTION = (
+    "Flies attitude trajectories on four-axis flight motion simulators. Degrees and seconds; frames in the order base, "
+    "outer, middle, inner; quaternions w, x, y, z from reference (north, up, east) to body (nose, up, right wing)."
+)
+
+
+class DataDirInUseError(StoreError):
+    """Another server works on this data folder."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(
+            f"data folder {folder} is in use by another Fullpose server: stop it, or give another --data-dir"
+        )
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """The server as an ASGI app. Its lifespan raises `DataDirInUseError` where another server has the data folder."""
+    app = FastAPI(
+        title="Fullpose",
+        version=VERSION,
+        description=DESCRIPTION,
+        lifespan=_lifespan(settings),
+        docs_url="/api/docs",
+        redoc_url=None,
+        openapi_url=f"{API}/openapi.json",
+        separate_input_output_schemas=False,
+    )
+    app.state.scenes = SceneServer()
+    problems.install(app)
+    for module in (rigs, trajectories, plans, sessions, stream, solve, runs, audit, health):
+        app.include_router(module.router, prefix=API)
+    app.include_router(scene_router, dependencies=[Depends(_scene)])
+    app.mount("/", console())
+    app.add_middleware(OriginGuard, settings=settings)
+
+    def contract() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = openapi.contract(app)
+        return app.openapi_schema
+
+    app.openapi = contract  # type: ignore[method-assign]  # FastAPI's documented way to extend it
+    return app
+
+
+def _lifespan(settings: Settings) -> Callable[[FastAPI], Any]:
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with AsyncExitStack() as stack:
+            folder = settings.data_dir.resolve()
+            stack.callback(os.close, await asyncio.to_thread(_lock, folder))
+            database = await asyncio.to_thread(Database, folder / "fullpose.db")
+            stack.callback(database.close)
+            services = _build(settings, folder, database)
+            stack.callback(app.state.scenes.close)
+            await services.queue.start()
+            stack.push_async_callback(services.queue.close)
+            stack.push_async_callback(services.hosts.close, stop_rigs=settings.stop_rigs_on_exit)
+            await services.hosts.adopt()
+            app.state.services = services
+            yield
+
+    return lifespan
+
+
+def _build(settings: Settings, folder: Path, database: Database) -> Services:
+    rig_store = RigStore(folder / "rigs")
+    trajectory_store = TrajectoryStore(database, folder / "trajectories")
+    plan_store = PlanStore(database, folder / "plans")
+    run_folder = folder / "runs"
+    run_folder.mkdir(exist_ok=True)
+
+    def directory(rig: str) -> Path:
+        return rig_store.folder / rig
+
+    def config(rig: str) -> RigConfig:
+        return RigConfig(rig, rig_store.get(rig).rig, directory(rig), run_folder, rate_hz=settings.rig_rate_hz)
+
+    def request(plan: str) -> PlanRequest:
+        row = plan_store.get(plan)
+        rig = rig_store.get(row.rig).rig
+        if rig_hash(rig) != row.rig_hash:
+            raise StoreError(f"rig {row.rig} has been changed since this plan was asked for: ask again")
+        start = None if row.start_deg is None else np.deg2rad(row.start_deg)
+        return PlanRequest(
+            plan_id=plan,
+            folder=plan_store.folder(plan),
+            trajectory=trajectory_store.folder(row.trajectory),
+            trajectory_sha256=row.trajectory,
+            name=trajectory_store.get(row.trajectory).name,
+            rig=rig,
+            rate_hz=row.rate_hz,
+            method=row.method,
+            options=row.options,
+            start=None if start is None else (float(start[0]), float(start[1]), float(start[2]), float(start[3])),
+        )
+
+    return Services(
+        settings=settings,
+        database=database,
+        rigs=rig_store,
+        trajectories=trajectory_store,
+        plans=plan_store,
+        queue=PlanQueue(plan_store, request),
+        audit=AuditLog(database),
+        hosts=RigHosts(rig_store, config, directory),
+    )
+
+
+def _lock(folder: Path) -> int:
+    """Lock the data folder for the life of the returned file descriptor."""
+    folder.mkdir(parents=True, exist_ok=True)
+    descriptor = os.open(folder / "server.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        raise DataDirInUseError(folder) from None
+    return descriptor
+
+
+async def _scene(connection: HTTPConnection, rig: str) -> None:
+    """Start the scene of a rig when it is first looked at."""
+    services: Services = connection.app.state.services
+    scenes: SceneServer = connection.app.state.scenes
+    if rig not in scenes.names():
+        await asyncio.to_thread(_start_scene, services, scenes, rig)
+
+
+def _start_scene(services: Services, scenes: SceneServer, rig: str) -> None:
+    entry = services.rigs.get(rig)
+
+    def latest() -> Any:
+        host = services.hosts.get(rig)
+        rows = None if host is None else host.latest()
+        return None if rows is None else rows[0]
+
+    with services.scene_lock:
+        if rig not in scenes.names():
+            scenes.start(entry.rig, entry.payload, rig, latest, services.rigs.folder)

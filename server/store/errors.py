@@ -1,0 +1,56 @@
+"""The errors of this package: one root; each child carries its evidence."""
+
+
+class StoreError(Exception):
+    """Root of every error that `server.store` raises."""
+
+
+class FileError(StoreError):
+    """A file that cannot be used: which file, line and column, which value, and what was expected there."""
+
+    def __init__(
+        self,
+        file: str,
+        expected: str,
+        *,
+        line: int | None = None,
+        column: str | None = None,
+        value: str | None = None,
+        unit: str = "line",
+        column_word: str = "column",
+    ) -> None:
+        where = [file]
+        if line is not None:
+            where.append(f"{unit} {line}")
+        if column is not None:
+            where.append(f"{column_word} {column}")
+        found = "" if value is None else f"{value}: "
+        super().__init__(f"{', '.join(where)}: {found}expected {expected}")
+        self.file = file
+        self.line = line
+        self.column = column
+        self.value = value
+        self.expected = expected
+
+
+class NotFoundError(StoreError):
+    """A thing that is named and not in the store."""
+
+    def __init__(self, kind: str, name: str) -> None:
+        super().__init__(f"no {kind} named {name!r}")
+        self.kind = kind
+        self.name = name
+
+
+class InUseError(StoreError):
+    """A thing that cannot go because something else needs it."""
+
+    def __init__(self, kind: str, name: str, by: str) -> None:
+        super().__init__(f"{kind} {name!r} is in use by {by}")
+        self.kind = kind
+        self.name = name
+        self.by = by
+
+
+class TransitionError(StoreError):
+    """A job told to do what its status does not allow."""

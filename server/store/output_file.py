@@ -1,0 +1,71 @@
+"""Writing the solved angles: CSV at 17 significant digits, or Parquet. The file appears whole or not at all."""
+
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from solver.solution import Solution
+
+COLUMNS = ("time_s", "base_deg", "outer_deg", "middle_deg", "inner_deg", "error_deg", "limited")
+_ROW = "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d\n"
+_CHUNK = 4096
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A path beside `path` to write to; it takes the place of `path` at the end, and is removed by an exception."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    os.close(descriptor)
+    draft = Path(name)
+    try:
+        yield draft
+        mask = os.umask(0)
+        os.umask(mask)
+        draft.chmod(0o666 & ~mask)  # mkstemp's files are private; this one is like any other
+        draft.replace(path)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+
+
+def write_solution(path: Path, solution: Solution, progress: Callable[[int, int], None] | None = None) -> None:
+    """Write one row a sample; Parquet where the name ends in .parquet, else CSV."""
+    with replacing(path) as draft:
+        if path.suffix == ".parquet":
+            _write_parquet(draft, solution)
+        else:
+            _write_csv(draft, solution, progress)
+
+
+def _write_csv(path: Path, solution: Solution, progress: Callable[[int, int], None] | None) -> None:
+    n = solution.time.size
+    with path.open("w", encoding="ascii", newline="") as stream:
+        stream.write(",".join(COLUMNS) + "\n")
+        for begin in range(0, n, _CHUNK):
+            part = slice(begin, min(begin + _CHUNK, n))
+            rows = np.column_stack(
+                [
+                    solution.time[part],
+                    np.rad2deg(solution.angles[part]),
+                    np.rad2deg(solution.error[part]),
+                    solution.limited[part] > 0,
+                ]
+            )
+            stream.write(_ROW * len(rows) % tuple(rows.ravel().tolist()))
+            if progress is not None:
+                progress(part.stop, n)
+
+
+def _write_parquet(path: Path, solution: Solution) -> None:
+    import pyarrow as pa  # half the start-up of a solve that writes CSV
+    import pyarrow.parquet as pq
+
+    angles = np.rad2deg(solution.angles)
+    columns = [solution.time, *angles.T, np.rad2deg(solution.error), (solution.limited > 0).astype(np.int8)]
+    table = pa.table(dict(zip(COLUMNS, [pa.array(np.ascontiguousarray(column)) for column in columns], strict=True)))
+    pq.write_table(table, path)

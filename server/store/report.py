@@ -1,0 +1,96 @@
+"""The report of a solve: what DESIGN's contract names, from a solution and its verification. Degrees and seconds."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from solver.rig import FRAMES
+from solver.solution import Solution, limited_name
+from solver.verify import Verification
+
+# A report is read by people and sent over the wire: the list of violations is cut, their number is not.
+MOST_VIOLATIONS = 1000
+
+
+def make_report(solution: Solution, verification: Verification) -> dict[str, Any]:
+    """The report as JSON-ready values (no nan, no infinity). `feasible`: inside every limit, nothing limited."""
+    steps = solution.step_time[np.isfinite(solution.step_time)]
+    blocking = solution.blocking
+    return {
+        "method": solution.method,
+        "rig": solution.rig.name,
+        "samples": int(solution.time.size),
+        "feasible": blocking is None and not solution.limited_samples and not verification.violations,
+        "max_error_deg": _finite(math.degrees(verification.max_error)),
+        "max_matrix_error": _finite(verification.max_matrix_error),
+        "iterations": {"median": float(np.median(solution.iterations)), "max": int(np.max(solution.iterations))},
+        "step_us": {"median": float(np.median(steps) * 1e6), "p99": float(np.percentile(steps, 99) * 1e6)}
+        if steps.size
+        else None,
+        "solve_s": _finite(solution.solve_time),
+        "peak": {
+            FRAMES[index]: {
+                "position_deg": math.degrees(verification.peaks[index, 0]),
+                "rate_deg_s": math.degrees(verification.peaks[index, 1]),
+                "acceleration_deg_s2": math.degrees(verification.peaks[index, 2]),
+            }
+            for index in solution.rig.geometry.frames
+        },
+        "limit_violations": [
+            {
+                "time_s": float(v.time),
+                "frame": v.frame,
+                "limit": v.limit,
+                "value": math.degrees(v.value),
+                "samples": v.samples,
+            }
+            for v in verification.violations[:MOST_VIOLATIONS]
+        ],
+        "limit_violation_samples": sum(v.samples for v in verification.violations),
+        "limited_samples": solution.limited_samples,
+        "limited_by": _limited_by(solution),
+        "blocking": None
+        if blocking is None
+        else {"time_s": float(blocking.time), "frame": blocking.frame, "limit": blocking.limit},
+    }
+
+
+def why_infeasible(report: dict[str, Any]) -> str | None:
+    """In one sentence why a flight is not feasible; None where it is."""
+    if report["feasible"]:
+        return None
+    blocking, violations = report["blocking"], report["limit_violations"]
+    if blocking is not None:
+        limit = f"{blocking['limit']} limit of the {blocking['frame']} frame"
+        return f"at {blocking['time_s']:.3f} s the {limit} closes the way"
+    if report["limited_samples"]:
+        first = report["limited_by"][0]
+        return (
+            f"{report['limited_samples']} of {report['samples']} samples miss the attitude (up to "
+            f"{report['max_error_deg']:.3g} deg) because of limits, most of them the {first['limit']} limit of the "
+            f"{first['frame']} frame"
+        )
+    first = violations[0]
+    return (
+        f"at {first['time_s']:.3f} s the {first['frame']} frame exceeds its {first['limit']} limit "
+        f"({first['value']:.4g} {UNITS[first['limit']]}); {report['limit_violation_samples']} such samples"
+    )
+
+
+UNITS = {"position": "deg", "rate": "deg/s", "acceleration": "deg/s^2"}
+
+
+def _limited_by(solution: Solution) -> list[dict[str, Any]]:
+    """How many samples each limit took, the most first."""
+    codes, counts = np.unique(solution.limited[solution.limited > 0], return_counts=True)
+    rows = []
+    for code, count in sorted(zip(codes, counts, strict=True), key=lambda pair: -int(pair[1])):
+        name = limited_name(int(code))
+        assert name is not None
+        rows.append({"frame": name[0], "limit": name[1], "samples": int(count)})
+    return rows
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,84 @@
+"""The tables. Times are UTC seconds since 1970; documents that are only handed on are JSON."""
+
+from typing import Any
+
+from sqlalchemy import JSON, Float, ForeignKey, Index, Integer, MetaData, String
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+# Names for constraints, so that a later migration can speak of them.
+NAMING = {
+    "ix": "ix_%(table_name)s_%(column_0_name)s",
+    "pk": "pk_%(table_name)s",
+    "fk": "fk_%(table_name)s_%(column_0_name)s",
+    "uq": "uq_%(table_name)s_%(column_0_name)s",
+}
+
+
+class Table(DeclarativeBase):
+    """Root of the tables."""
+
+    metadata = MetaData(naming_convention=NAMING)
+    type_annotation_map = {dict[str, Any]: JSON, list[Any]: JSON}  # noqa: RUF012 - SQLAlchemy reads it from the class
+
+
+class TrajectoryRow(Table):
+    """A stored flight; its arrays are in trajectories/<sha256>/."""
+
+    __tablename__ = "trajectories"
+
+    sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
+    source_sha256: Mapped[str] = mapped_column(String(64))
+    name: Mapped[str] = mapped_column(String(200))
+    convention: Mapped[str] = mapped_column(String(8))
+    source_format: Mapped[str] = mapped_column(String(8))
+    source_bytes: Mapped[int] = mapped_column(Integer)
+    samples: Mapped[int] = mapped_column(Integer)
+    start_s: Mapped[float] = mapped_column(Float)
+    duration_s: Mapped[float] = mapped_column(Float)
+    rate_hz: Mapped[float | None] = mapped_column(Float)
+    uniform: Mapped[bool]
+    peak_body_rate_deg_s: Mapped[float | None] = mapped_column(Float)
+    warnings: Mapped[list[Any]]
+    created: Mapped[float] = mapped_column(Float)
+
+
+class PlanRow(Table):
+    """A plan and its job; its arrays are in plans/<id>/."""
+
+    __tablename__ = "plans"
+    __table_args__ = (Index("ix_plans_status", "status"),)
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    trajectory: Mapped[str] = mapped_column(ForeignKey("trajectories.sha256"))
+    rig: Mapped[str] = mapped_column(String(64))
+    rig_hash: Mapped[str] = mapped_column(String(64))
+    method: Mapped[str] = mapped_column(String(64))
+    options: Mapped[dict[str, Any]]
+    start_deg: Mapped[list[Any] | None]
+    rate_hz: Mapped[float] = mapped_column(Float)
+    status: Mapped[str] = mapped_column(String(16))
+    error: Mapped[dict[str, Any] | None]
+    result: Mapped[dict[str, Any] | None]
+    created: Mapped[float] = mapped_column(Float)
+    started: Mapped[float | None] = mapped_column(Float)
+    finished: Mapped[float | None] = mapped_column(Float)
+
+
+class AuditRow(Table):
+    """One command, accepted or refused."""
+
+    __tablename__ = "audit"
+    __table_args__ = (Index("ix_audit_rig", "rig"),)
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    at: Mapped[float] = mapped_column(Float)
+    who: Mapped[str] = mapped_column(String(128))
+    rig: Mapped[str] = mapped_column(String(64))
+    command: Mapped[str] = mapped_column(String(32))
+    args: Mapped[dict[str, Any]]
+    lease_epoch: Mapped[int | None]
+    lease_sequence: Mapped[int | None]
+    state_before: Mapped[str] = mapped_column(String(16))
+    state_after: Mapped[str] = mapped_column(String(16))
+    accepted: Mapped[bool]
+    detail: Mapped[str | None]
