@@ -15,6 +15,7 @@ from solver.verify import attitude_errors, payload_attitudes
 
 Array = NDArray[np.float64]
 
+PLAN = "plan"  # the one method that sees the whole flight at once
 BLOCK = 16  # samples between two readings of the clock and two reports of progress
 ORTHONORMAL = 1e-9  # how far C C^T may be from the identity
 
@@ -39,8 +40,14 @@ def solve(
     """
     t, C = check_flight(time, attitude)
     near = check_start(start, rig)
+    if method == PLAN:
+        from solver.planner import PlanOptions, plan  # the planner checks its input by this module
+
+        if options is not None and not isinstance(options, PlanOptions):
+            raise MethodError(f"options of {method}: expected PlanOptions, not {type(options).__name__}")
+        return plan(t, C, rig, near, options=options, progress=progress, clock=clock).solution
     if method not in METHODS:
-        raise MethodError(f"method {method!r}: expected one of {', '.join(METHODS)}")
+        raise MethodError(f"method {method!r}: expected one of {', '.join((PLAN, *METHODS))}")
     chosen = METHODS[method]
     if options is None:
         options = chosen.options()

@@ -1,0 +1,187 @@
+"""The best that can be done for a flight that cannot be flown: the least attitude error inside the limits.
+
+The exact path stays wherever it is inside every limit. Around each place where it is not, all four frames are set
+free: the squared attitude error (Gauss-Newton, the integral over time) is minimised under the limits, which are
+linear in the frames' angles, joined to the exact path on both sides with value, slope and bend. Where the stretch is
+too short for that it is made longer.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.planner.basis import WIDTH, spline_basis
+from solver.planner.options import PlanOptions
+from solver.planner.programme import Answer, Equality, QuadraticProgramme, solve_programme
+from solver.planner.refine import MET, NEAR, STRIDE, Limits, cost_weights, rig_limits, worst
+from solver.planner.rows import ROW, displaced, error_bands, limit_rows, over_limits
+from solver.rig import Rig
+from solver.solution import EXACT, limited_code
+
+Array = NDArray[np.float64]
+PADDING = 0.25  # [s] of the exact path given up on each side of a place outside the limits, at first
+ERROR_WEIGHT = 1e6  # [1/rad^2] beside rates and accelerations squared as shares of their limits
+TRUST = 0.5  # [rad] a frame moves in one iteration at most
+ITERATIONS = 25
+
+
+@dataclass(frozen=True)
+class BestEffort:
+    """angles (n, 4) [rad], limited (n,) codes, and how far outside the limits it still is (a share; <= 0 inside)."""
+
+    angles: Array
+    limited: NDArray[np.int16]
+    over: float
+
+
+def least_error(
+    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None = None
+) -> BestEffort:
+    """Bring the exact path angles (n, 4) [rad] inside the limits, giving up the attitude where that cannot be helped.
+
+    start (4,) [rad]: the first pose, kept as it is.
+    """
+    n = len(time)
+    limits = rig_limits(rig)
+    over, whose = np.empty((n, 3)), np.empty((n, 3), np.int8)
+    x = angles.copy()
+    if start is not None:
+        x[0] = start
+    limited = np.zeros(n, np.int16)
+    padding = PADDING
+    while True:
+        over_limits(time, x, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
+        if start is not None and not limited.any():
+            over[0, 0] = max(over[0, 0], float(np.abs(angles[0] - start).max()))
+        bad = np.flatnonzero(over.max(axis=1) > MET)
+        if not bad.size:
+            return BestEffort(x, limited, float(over.max()))
+        whole = padding > time[-1] - time[0]
+        x = angles.copy()
+        if start is not None:
+            x[0] = start
+        bad = np.union1d(bad, np.flatnonzero(limited))
+        limited[:] = EXACT
+        for begin, end in _stretches(time, bad, padding):
+            part = slice(begin, end)
+            fixed = (begin > 0, end < n)
+            x[part], limited[part] = _free(
+                time[part], attitude[part], x[part], rig, options, fixed, start if begin == 0 else None
+            )
+        if whole:
+            return BestEffort(x, limited, worst(time, x, limits)[0])
+        padding *= 2.0
+
+
+def _stretches(time: Array, bad: NDArray[np.int64], padding: float) -> list[tuple[int, int]]:
+    """Half-open ranges of samples around the bad ones, padded by so many seconds, merged where they meet."""
+    begin = np.searchsorted(time, time[bad] - padding)
+    end = np.searchsorted(time, time[bad] + padding, side="right")
+    ranges: list[tuple[int, int]] = []
+    for a, b in zip(begin.tolist(), end.tolist(), strict=True):
+        if ranges and a <= ranges[-1][1] + 8:
+            ranges[-1] = (ranges[-1][0], max(b, ranges[-1][1]))
+        else:
+            ranges.append((a, b))
+    return ranges
+
+
+def _free(
+    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, pinned: tuple[bool, bool], start: Array | None
+) -> tuple[Array, NDArray[np.int16]]:  # fmt: skip
+    """(angles (n, 4), limited (n,)) of one stretch with all frames free."""
+    n = len(time)
+    x = angles.copy()
+    if n < 2:
+        x = np.clip(x, rig.position_min, rig.position_max)
+        return x, np.full(n, limited_code(0, 0), np.int16)
+    limits, true_limits = rig_limits(rig, options.reserve), rig_limits(rig)
+    basis = spline_basis(time, options.knot)
+    stride = max(1, int(options.knot / STRIDE / ((time[-1] - time[0]) / (n - 1))))
+    flags = np.zeros((n, 3), np.uint8)
+    over, whose = np.empty((n, 3)), np.empty((n, 3), np.int8)
+    ones = np.eye(4)
+    trust = TRUST
+    best: tuple[float, Array, Answer, NDArray[np.int64]] | None = None
+    for _ in range(ITERATIONS):
+        problem, tag, _ = _programme(time, attitude, x, rig, limits, options, basis, stride, flags, trust, pinned, start)
+        answer = solve_programme(problem)
+        moved = np.empty_like(x)
+        for i in range(4):
+            column = np.empty((n, 4))
+            displaced(x, np.tile(ones[i], (n, 1)), basis.first, basis.values, np.ascontiguousarray(answer.coefficients[i::4]), column)
+            moved[:, i] = column[:, i]
+        over_limits(time, moved, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
+        flags |= (over > 1e-6).astype(np.uint8)
+        outside = worst(time, moved, true_limits)[0]
+        bands = np.zeros_like(problem.bands)
+        error = error_bands(
+            rig.axes, time, attitude, moved, basis.first, basis.values, stride, ERROR_WEIGHT,
+            *cost_weights(rig, options), bands, np.zeros(len(problem.gradient)),
+        )  # fmt: skip
+        merit = error + 1e6 * max(0.0, outside)
+        shift = float(np.abs(answer.coefficients).max())
+        if best is None or merit < best[0]:
+            settled = best is not None and best[0] - merit < 1e-4 * best[0] and outside <= MET
+            best = merit, moved, answer, tag
+            x = moved
+            if settled or (shift < 1e-5 and outside <= MET):
+                break
+        else:
+            trust *= 0.3
+            if trust < 1e-6:
+                break
+    assert best is not None
+    return best[1], _codes(n, best[2], best[3])
+
+
+def _codes(n: int, answer: Answer, tag: NDArray[np.int64]) -> NDArray[np.int16]:
+    """The limit that holds each sample (n,): of the binding row nearest in time, the dearest where several are."""
+    codes = np.full(n, limited_code(0, 1), np.int16)
+    active = np.flatnonzero(answer.multipliers > 1e-6 * max(1e-12, float(np.max(answer.multipliers, initial=0.0))))
+    if not active.size:
+        return codes
+    order = active[np.lexsort((answer.multipliers[active], tag[active] // 12))]
+    sample = tag[order] // 12
+    last = np.r_[np.flatnonzero(np.diff(sample)), len(sample) - 1]
+    at, code = sample[last], 1 + tag[order[last]] % 12
+    right = np.clip(np.searchsorted(at, np.arange(n)), 0, len(at) - 1)
+    left = np.maximum(right - 1, 0)
+    nearer = np.where(np.abs(at[left] - np.arange(n)) <= np.abs(at[right] - np.arange(n)), left, right)
+    return code[nearer].astype(np.int16)
+
+
+def _programme(
+    time: Array, attitude: Array, x: Array, rig: Rig, limits: Limits, options: PlanOptions, basis, stride: int, flags,
+    trust: float, pinned: tuple[bool, bool], start: Array | None,
+) -> tuple[QuadraticProgramme, NDArray[np.int64], float]:  # fmt: skip
+    size = 4 * basis.size
+    bands, gradient = np.zeros((size, 4 * ROW)), np.zeros(size)
+    error = error_bands(
+        rig.axes, time, attitude, x, basis.first, basis.values, stride, ERROR_WEIGHT,
+        *cost_weights(rig, options), bands, gradient,
+    )  # fmt: skip
+    ones = np.ones_like(x)
+    room = 1024
+    while True:
+        origin, rows, bound = np.empty(room, np.int64), np.empty((room, ROW)), np.empty(room)
+        tag = np.empty(room, np.int64)
+        count = limit_rows(
+            time, x, ones, basis.first, basis.values, stride, flags, trust, limits.low, limits.high,
+            limits.rate, limits.acceleration, NEAR, origin, rows, bound, tag,
+        )  # fmt: skip
+        if count <= room:
+            break
+        room = count
+    equalities = []
+    if start is not None:
+        for i in rig.geometry.frames:
+            row = np.zeros(ROW)
+            row[:WIDTH] = basis.values[0]
+            equalities.append(Equality(int(basis.first[0]), row, float(start[i] - x[0, i]), i))
+    tag = tag[:count]
+    problem = QuadraticProgramme(
+        bands, gradient, origin[:count], rows[:count], bound[:count], tag % 12 // 3, trust, pinned, tuple(equalities), 4
+    )
+    return problem, tag, error

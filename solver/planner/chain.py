@@ -1,0 +1,419 @@
+"""Dynamic programming over the nodes: the cheapest chain under the rate limits (METHODS, section 8, steps 1 and 2).
+
+Stages lie some 50 ms apart; an edge joins two nodes of neighbouring stages whose angles differ, frame by frame, by no
+more than the rate limit allows. The cost is the integral of the rates squared, each as a share of its limit, plus a
+rise near the singularity. Windows on the grid keep the work at nodes times neighbours a stage; back-pointers are kept
+for a block of stages and the costs at its beginning, so memory does not grow with the flight.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver._jit import kernel
+from solver.charts import TURN
+from solver.planner.nodes import Lattice, fill_nodes, grid_circle
+from solver.planner.options import PlanOptions
+from solver.rig import Rig
+
+Array = NDArray[np.float64]
+REFERENCE_RATE = math.pi  # [rad/s] stands in for the limit, in costs only, where no frame has one
+BACK_BYTES = 128 << 20  # of back-pointers held at once
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Avoid:
+    """A place that a chain should stay away from: around `position` (4,) [rad] of the stages first..last."""
+
+    first: int
+    last: int
+    position: Array  # (last - first + 1, 4) [rad]
+    radius: float  # [rad]
+    cost: float  # at the centre, as if so many seconds at every limit
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A way through the stages, or how far one came.
+
+    `angles` (k, 4) [rad] unwrapped, one row a stage; empty where there is no chain. `reached` stages could be reached;
+    `frame`, `limit` (indices of `FRAMES`, `LIMITS`) closed the next one.
+    """
+
+    angles: Array
+    cost: float
+    reached: int
+    frame: int = -1
+    limit: int = -1
+
+    @property
+    def found(self) -> bool:
+        """Whether a chain reaches the end."""
+        return len(self.angles) > 0
+
+
+def reference_rates(rig: Rig) -> Array:
+    """The rates that costs are measured in: the limits, or the largest of the others where there is none. (4,)"""
+    rate = rig.max_rate.copy()
+    finite = np.isfinite(rate) & (rig.axes >= 0)
+    rate[~finite] = rate[finite].max() if finite.any() else REFERENCE_RATE
+    return rate
+
+
+@kernel
+def advance(
+    position0: Array,
+    cost0: Array,
+    position1: Array,
+    alive1: NDArray[np.bool_],
+    node_cost: Array,
+    reach: Array,
+    stretch: float,
+    excess: float,
+    weight: Array,
+    low: Array,
+    high: Array,
+    wraps: NDArray[np.bool_],
+    copies: NDArray[np.int64],
+    cost1: Array,
+    back: NDArray[np.int32],
+) -> int:
+    """One stage of the programme: cost1, back <- the best predecessor of every state; returns how many were reached.
+
+    States are node * prod(copies) + copy. reach (4,) [rad] is what the rate limits allow in the stage; up to
+    `stretch` times as much is taken at the price of `excess` per (overrun as a share)^2. weight (4,) [1/rad^2].
+    """
+    N = position1.shape[0]
+    G = N // 4
+    step = TURN / G
+    W = cost1.shape[0] // N
+    stride3 = 1
+    stride2 = copies[3]
+    stride1 = stride2 * copies[2]
+    stride0 = stride1 * copies[1]
+    half = G // 2
+    radius = np.empty(2, np.int64)
+    window = np.empty(4)
+    for k in range(4):
+        window[k] = reach[k] * stretch
+    for chart in range(2):
+        span = window[0] if chart == 0 else window[3]
+        radius[chart] = half if span >= math.pi else min(half, int(math.ceil(span / step)) + 1)
+    open0 = np.empty(N, np.bool_)
+    for i in range(N):
+        open0[i] = False
+        for w in range(W):
+            if cost0[i * W + w] < np.inf:
+                open0[i] = True
+                break
+    shift = np.empty(4, np.int64)
+    reached = 0
+    for j in range(N):
+        for w in range(W):
+            cost1[j * W + w] = np.inf
+            back[j * W + w] = -1
+        if not alive1[j]:
+            continue
+        for chart in range(2):
+            angle = position1[j, 0] if chart == 0 else position1[j, 3]
+            centre = int(np.rint((angle + math.pi) / step))
+            last = radius[chart]
+            if 2 * last + 1 > G:
+                last = G - 1 - radius[chart]
+            for offset in range(-radius[chart], last + 1):
+                g = (centre + offset) % G
+                for branch in range(2):
+                    i = (2 * chart + branch) * G + g
+                    if not open0[i]:
+                        continue
+                    edge = node_cost[j]
+                    near = True
+                    for k in range(4):
+                        gap = position1[j, k] - position0[i, k]
+                        turns = 0.0
+                        if gap > math.pi or gap < -math.pi:
+                            turns = np.rint(gap / TURN)
+                            gap -= TURN * turns
+                        size = abs(gap)
+                        if size > window[k]:
+                            near = False
+                            break
+                        shift[k] = 0 if wraps[k] else int(turns)
+                        edge += weight[k] * size * size
+                        if size > reach[k]:
+                            over = size / reach[k] - 1.0
+                            edge += excess * over * over
+                    if not near:
+                        continue
+                    if W == 1:
+                        if shift[0] == 0 and shift[1] == 0 and shift[2] == 0 and shift[3] == 0:
+                            total = cost0[i] + edge
+                            if total < cost1[j]:
+                                cost1[j] = total
+                                back[j] = i
+                        continue
+                    for w in range(W):
+                        c0 = w // stride0 + shift[0]
+                        c1 = (w // stride1) % copies[1] + shift[1]
+                        c2 = (w // stride2) % copies[2] + shift[2]
+                        c3 = w % copies[3] + shift[3]
+                        if c0 < 0 or c1 < 0 or c2 < 0 or c3 < 0:
+                            continue
+                        if c0 >= copies[0] or c1 >= copies[1] or c2 >= copies[2] or c3 >= copies[3]:
+                            continue
+                        v = i * W + c0 * stride0 + c1 * stride1 + c2 * stride2 + c3 * stride3
+                        total = cost0[v] + edge
+                        if total < cost1[j * W + w]:
+                            cost1[j * W + w] = total
+                            back[j * W + w] = v
+        for w in range(W):
+            if cost1[j * W + w] < np.inf:
+                if W > 1:
+                    rest = w
+                    for k in range(4):
+                        stride = stride0 if k == 0 else stride1 if k == 1 else stride2 if k == 2 else stride3
+                        turn = rest // stride
+                        rest -= turn * stride
+                        if position1[j, k] + TURN * turn > high[k]:
+                            cost1[j * W + w] = np.inf
+                if cost1[j * W + w] < np.inf:
+                    reached += 1
+    return reached
+
+
+@kernel
+def _node_costs(
+    position: Array, measure: Array, home: Array, free: Array, home_cost: float, margin: float, rise: float, out: Array
+) -> None:
+    for i in range(position.shape[0]):
+        total = 0.0
+        for k in range(4):
+            gap = position[i, k] - home[k]
+            if free[k] > 0.0:
+                gap -= TURN * np.rint(gap / TURN)
+            total += home_cost * gap * gap
+        if measure[i] < margin:
+            short = margin / measure[i] - 1.0
+            total += rise * min(short, 50.0)
+        out[i] = total
+
+
+@kernel
+def nearest_crossing(
+    position0: Array, cost0: Array, position1: Array, alive1: NDArray[np.bool_], wraps: NDArray[np.bool_], reach: Array
+) -> tuple[int, float]:
+    """(frame, ratio): of all edges between open and living nodes, the one least over its reach, and its worst frame."""
+    N = position1.shape[0]
+    W = cost0.shape[0] // N
+    best = np.inf
+    which = -1
+    for i in range(N):
+        is_open = False
+        for w in range(W):
+            if cost0[i * W + w] < np.inf:
+                is_open = True
+        if not is_open:
+            continue
+        for j in range(N):
+            if not alive1[j]:
+                continue
+            worst = 0.0
+            frame = -1
+            for k in range(4):
+                gap = position1[j, k] - position0[i, k]
+                if wraps[k]:
+                    gap -= TURN * np.rint(gap / TURN)
+                ratio = abs(gap) / reach[k]
+                if ratio > worst:
+                    worst = ratio
+                    frame = k
+                if worst >= best:
+                    break
+            if worst < best:
+                best = worst
+                which = frame
+    return which, best
+
+
+class Programme:
+    """The dynamic programme of one flight on one grid; `run` finds the chain."""
+
+    def __init__(
+        self, time: Array, attitude: Array, rig: Rig, grid: Lattice, options: PlanOptions, slack: float = 0.0
+    ) -> None:
+        """time (k,) [s] and attitude (k, 3, 3) of the stages; `slack` [rad] widens every edge and range."""
+        self.time, self.attitude, self.rig, self.grid, self.options = time, attitude, rig, grid, options
+        self.slack = slack
+        self.cosines, self.sines = grid_circle(grid.size)
+        self.rates = reference_rates(rig)
+        self.stretch = 1.0
+        self.excess = 0.0
+        self.margin_gain = 1.0
+        self.avoid: list[Avoid] = []
+
+    def nodes(self, stage: int) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """(position (4G, 4), cost (4G,), alive (4G,)) of a stage."""
+        n = 4 * self.grid.size
+        position = np.zeros((n, 4))
+        measure = np.ones(n)
+        alive = np.zeros(n, np.bool_)
+        fill_nodes(
+            self.grid.horizontal, self.attitude[stage], self.cosines, self.sines, self.grid.low, self.grid.high,
+            position, measure, alive,
+        )  # fmt: skip
+        o = self.options
+        cost = np.empty(n)
+        _node_costs(
+            position, measure, self.rig.home, self.grid.wraps.astype(float), o.home_cost,
+            o.singularity_margin * self.margin_gain, o.singularity_cost * self.margin_gain, cost,
+        )  # fmt: skip
+        for place in self.avoid:
+            if place.first <= stage <= place.last:
+                gap = position - place.position[stage - place.first]
+                gap -= TURN * np.rint(gap / TURN)
+                near = np.maximum(0.0, 1.0 - np.abs(gap).max(axis=1) / place.radius)
+                cost += place.cost * near
+        dt = self.time[min(stage + 1, len(self.time) - 1)] - self.time[max(stage - 1, 0)]
+        cost *= 0.5 * dt if len(self.time) > 1 else 1.0
+        return position, cost, alive
+
+    def run(self, start: Array | None = None, progress: Progress | None = None) -> Chain:
+        """The cheapest chain from the nodes next to `start` (4,) [rad], or from any."""
+        grid, n = self.grid, len(self.time)
+        W = int(np.prod(grid.copies))
+        block = max(64, BACK_BYTES // (4 * grid.states))
+        position, cost, alive = self.nodes(0)
+        costs = self._first(position, cost, alive, start, W)
+        if not np.isfinite(costs).any():
+            return Chain(np.empty((0, 4)), math.inf, 0, *self._closed_by_position(0))
+        checkpoints = [(0, costs, position)]
+        back = np.empty((min(block, max(1, n - 1)), grid.states), np.int32)
+        for stage in range(1, n):
+            if (stage - 1) % block == 0 and stage > 1:
+                checkpoints.append((stage - 1, costs, position))
+            ahead = self._step(stage, position, costs, back[(stage - 1) % block])
+            if ahead is None:
+                return Chain(np.empty((0, 4)), math.inf, stage, *self._closed_by(stage, position, costs))
+            position, costs = ahead
+            if progress is not None and stage % 64 == 0:
+                progress(stage, n)
+        final = int(np.argmin(costs))
+        path = np.empty(n, np.int64)
+        path[-1] = final
+        for number in range(len(checkpoints) - 1, -1, -1):
+            first, at, where = checkpoints[number]
+            last = checkpoints[number + 1][0] if number + 1 < len(checkpoints) else n - 1
+            if number + 1 < len(checkpoints):  # these pointers were overwritten: compute them again
+                for stage in range(first + 1, last + 1):
+                    again = self._step(stage, where, at, back[(stage - 1) % block])
+                    if again is None:
+                        raise AssertionError("a stage reached before is out of reach now")
+                    where, at = again
+            for stage in range(last, first, -1):
+                path[stage - 1] = back[(stage - 1) % block][path[stage]]
+        return Chain(self._unwrapped(path, W, start), float(costs[final]), n)
+
+    def _first(self, position: Array, cost: Array, alive: NDArray[np.bool_], start: Array | None, W: int) -> Array:
+        costs = np.full((len(position), W), math.inf)
+        turns = np.array(np.unravel_index(np.arange(W), self.grid.copies)).T  # (W, 4)
+        lifted = position[:, None, :] + TURN * turns[None]
+        inside = (lifted <= self.grid.high).all(axis=2) & alive[:, None]
+        costs[inside] = np.broadcast_to(cost[:, None], costs.shape)[inside]
+        if start is not None:
+            gap = lifted - start
+            gap -= np.where(self.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
+            far = np.abs(gap).max(axis=2)
+            near = inside & (far <= 1.5 * self.grid.step + self.slack)
+            costs[~near] = math.inf
+            costs[near] += far[near]
+        return costs.ravel()
+
+    def _reach(self, stage: int) -> Array:
+        dt = self.time[stage] - self.time[stage - 1]
+        return np.minimum(self.rig.max_rate * dt, 1e3) + self.slack
+
+    def _step(self, stage: int, position: Array, costs: Array, back: NDArray[np.int32]) -> tuple[Array, Array] | None:
+        dt = self.time[stage] - self.time[stage - 1]
+        ahead, node_cost, alive = self.nodes(stage)
+        after = np.empty_like(costs)
+        weight = self.rig.weight / (self.rates**2 * dt)
+        reached = advance(
+            position, costs, ahead, alive, node_cost, self._reach(stage), self.stretch, self.excess, weight,
+            self.grid.low, self.grid.high, self.grid.wraps, self.grid.copies, after, back,
+        )  # fmt: skip
+        return (ahead, after) if reached else None
+
+    def _closed_by_position(self, stage: int) -> tuple[int, int]:
+        """(frame, 0): the frame whose range lies farthest from the nearest node of a stage that has none."""
+        n = 4 * self.grid.size
+        position, measure, alive = np.zeros((n, 4)), np.ones(n), np.zeros(n, np.bool_)
+        wide = np.full(4, math.inf)
+        fill_nodes(
+            self.grid.horizontal, self.attitude[stage], self.cosines, self.sines, self.grid.low, wide,
+            position, measure, alive,
+        )  # fmt: skip
+        over = position - self.grid.high
+        over = np.minimum(over, self.grid.low + TURN - position)[alive]  # to the nearer end of the range
+        best = over[np.argmin(over.max(axis=1))]
+        return int(np.argmax(best)), 0
+
+    def _closed_by(self, stage: int, position: Array, costs: Array) -> tuple[int, int]:
+        ahead, _, alive = self.nodes(stage)
+        if not alive.any():
+            return self._closed_by_position(stage)
+        frame, ratio = nearest_crossing(position, costs, ahead, alive, self.grid.wraps, self._reach(stage))
+        if ratio <= 1.0:  # only the count of turns kept the edge away: the range, then
+            finite = np.isfinite(self.grid.high)
+            return int(np.argmax(finite)), 0
+        return frame, 1
+
+    def _unwrapped(self, path: NDArray[np.int64], W: int, start: Array | None) -> Array:
+        """The angles of a path of states (k, 4), continuous, in their counted turns, else the turn nearest home."""
+        n = len(path)
+        angles = np.empty((n, 4))
+        turns = np.array(np.unravel_index(path % W, self.grid.copies)).T
+        node = path // W
+        G = self.grid.size
+        for stage in range(n):
+            single(
+                self.grid.horizontal, self.attitude[stage], node[stage] // G, self.cosines[node[stage] % G],
+                self.sines[node[stage] % G], node[stage] % G, G, self.grid.low, angles[stage],
+            )  # fmt: skip
+        angles += TURN * turns
+        wraps = self.grid.wraps
+        if n > 1:
+            steps = np.diff(angles[:, wraps], axis=0)
+            steps -= TURN * np.rint(steps / TURN)
+            angles[1:, wraps] = angles[0, wraps] + np.cumsum(steps, axis=0)
+        if wraps.any():
+            target = self.rig.home[wraps] if start is None else start[wraps]
+            at = angles[0, wraps]
+            angles[:, wraps] += TURN * np.rint((target - at) / TURN)
+        return angles
+
+
+@kernel
+def single(
+    horizontal: bool, C: Array, chart_branch: int, cosine: float, sine: float, g: int, G: int, low: Array, d: Array
+) -> None:
+    """d <- the one node of index (chart_branch, g); as `fill_nodes` has it."""
+    position = np.empty((4, 4))
+    measure = np.empty(4)
+    alive = np.empty(4, np.bool_)
+    cosines = np.empty(1)
+    sines = np.empty(1)
+    cosines[0] = cosine
+    sines[0] = sine
+    high = np.full(4, np.inf)
+    fill_nodes(horizontal, C, cosines, sines, low, high, position, measure, alive)
+    # A grid of one point is labelled -pi: put the chart's own angle back.
+    frame = 0 if chart_branch < 2 else 3
+    angle = -math.pi + TURN / G * g
+    for k in range(4):
+        d[k] = position[chart_branch, k]
+    gap = angle - low[frame]
+    d[frame] = low[frame] + gap - TURN * math.floor(gap / TURN)

@@ -1,0 +1,157 @@
+"""Exact curves next to given ones: orthogonal projection onto the solutions, and the smooth curve through a chain.
+
+The step methods' chart keeps d1 or d4, which is right for one sample but has a corner where the chart changes. Here a
+curve is put back by the shortest way (Newton along J^+), which is smooth in its input; only at the very end does
+the chart take the last digits.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solveh_banded
+
+from solver._jit import kernel
+from solver.charts import project
+from solver.kinematics import jacobian, payload_attitude, rotation_error
+
+Array = NDArray[np.float64]
+
+
+@kernel
+def closest(axes: NDArray[np.int64], C: Array, d: Array) -> float:
+    """d <- the exact pose next to d by Newton steps of least norm; returns the error left [rad], nan where singular.
+
+    C (3, 3), d (4,) [rad] in place.
+    """
+    F = np.empty((3, 3))
+    J = np.empty((3, 4))
+    e = np.empty(3)
+    size = 0.0
+    for iteration in range(12):
+        payload_attitude(axes, d, F)
+        size = rotation_error(F, C, e)
+        if size < 4e-16 or (iteration > 2 and size < 4e-15):
+            break
+        jacobian(axes, d, J)
+        # (J J^T) y = -e, 3x3 symmetric, by cofactors
+        a = b = c = p = q = r = 0.0
+        for k in range(4):
+            a += J[0, k] * J[0, k]
+            b += J[1, k] * J[1, k]
+            c += J[2, k] * J[2, k]
+            p += J[0, k] * J[1, k]
+            q += J[0, k] * J[2, k]
+            r += J[1, k] * J[2, k]
+        c00 = b * c - r * r
+        c01 = q * r - p * c
+        c02 = p * r - q * b
+        det = a * c00 + p * c01 + q * c02
+        if not det > 1e-12:
+            return np.nan
+        c11 = a * c - q * q
+        c12 = p * q - a * r
+        c22 = a * b - p * p
+        y0 = -(c00 * e[0] + c01 * e[1] + c02 * e[2]) / det
+        y1 = -(c01 * e[0] + c11 * e[1] + c12 * e[2]) / det
+        y2 = -(c02 * e[0] + c12 * e[1] + c22 * e[2]) / det
+        scale = 1.0
+        longest = 0.0
+        for k in range(4):
+            longest = max(longest, abs(J[0, k] * y0 + J[1, k] * y1 + J[2, k] * y2))
+        if longest > 0.5:
+            scale = 0.5 / longest
+        for k in range(4):
+            d[k] += scale * (J[0, k] * y0 + J[1, k] * y1 + J[2, k] * y2)
+    return size
+
+
+@kernel
+def closest_all(axes: NDArray[np.int64], horizontal: bool, attitude: Array, d: Array) -> int:
+    """`closest` of every row in place; returns how many had to fall back to the chart (singular or not converged).
+
+    attitude (n, 3, 3), d (n, 4) [rad].
+    """
+    fallen = 0
+    near = np.empty(4)
+    for k in range(d.shape[0]):
+        near[:] = d[k]
+        size = closest(axes, attitude[k], d[k])
+        if not size < 1e-9:
+            project(horizontal, attitude[k], near, d[k])
+            fallen += 1
+    return fallen
+
+
+@kernel
+def polish(horizontal: bool, attitude: Array, d: Array) -> None:
+    """The last digits: every row through the chart that is farther from its fold. In place."""
+    for k in range(d.shape[0]):
+        project(horizontal, attitude[k], d[k], d[k])
+
+
+@kernel
+def null_vectors(horizontal: bool, d: Array, n: Array) -> None:
+    """n <- unit null vectors, (c3, -s2 s3, -c2 c3, -s2) scaled; continuous in d. d, n (k, 4). Zero where singular."""
+    for k in range(d.shape[0]):
+        s2 = math.sin(d[k, 1])
+        c2 = math.cos(d[k, 1])
+        s3 = math.sin(d[k, 2])
+        c3 = math.cos(d[k, 2])
+        n[k, 0] = c3
+        n[k, 1] = -s2 * s3
+        n[k, 2] = -c2 * c3
+        n[k, 3] = s2 if horizontal else -s2
+        size = math.sqrt(c3 * c3 + s2 * s2 * s3 * s3 + c2 * c2 * c3 * c3 + s2 * s2)
+        for i in range(4):
+            n[k, i] = n[k, i] / size if size > 1e-12 else 0.0
+
+
+def smoothed(y: Array, stiffness: float) -> Array:
+    """The rows of y (k, m), evenly spaced, with stiffness * |second difference|^2 weighed against |change|^2."""
+    n = len(y)
+    if n < 3 or stiffness == 0.0:
+        return y.copy()
+    bands = np.zeros((3, n))  # I + stiffness D^T D, upper
+    bands[2] = 1.0
+    for row, value in ((slice(0, n - 2), 1.0), (slice(1, n - 1), 4.0), (slice(2, n), 1.0)):
+        bands[2, row] += stiffness * value
+    bands[1, 1 : n - 1] += -2.0 * stiffness
+    bands[1, 2:n] += -2.0 * stiffness
+    bands[0, 2:n] += stiffness
+    return np.asarray(solveh_banded(bands, y, check_finite=False))
+
+
+@kernel
+def spline_rows(knots: Array, y: Array, slope: Array, time: Array, out: Array) -> None:
+    """out <- the cubic Hermite curve through (knots, y) with the slopes given, at `time` (increasing)."""
+    j = 0
+    last = knots.shape[0] - 2
+    for k in range(time.shape[0]):
+        while j < last and time[k] > knots[j + 1]:
+            j += 1
+        h = knots[j + 1] - knots[j]
+        s = (time[k] - knots[j]) / h
+        a = 1.0 - s
+        for i in range(y.shape[1]):
+            rise = y[j + 1, i] - y[j, i]
+            bend0 = slope[j, i] * h - rise
+            bend1 = rise - slope[j + 1, i] * h
+            out[k, i] = a * y[j, i] + s * y[j + 1, i] + s * a * (a * bend0 + s * bend1)
+
+
+def spline_slopes(knots: Array, y: Array) -> Array:
+    """Slopes of the natural cubic spline through (knots (k,), y (k, m))."""
+    n = len(knots)
+    if n == 2:
+        return np.repeat((y[1:] - y[:1]) / (knots[1] - knots[0]), 2, axis=0)
+    h = np.diff(knots)
+    chord = np.diff(y, axis=0) / h[:, None]
+    bands = np.zeros((2, n))
+    bands[1, :-1] += 2.0 / h
+    bands[1, 1:] += 2.0 / h
+    bands[0, 1:] = 1.0 / h
+    right = np.zeros_like(y)
+    right[:-1] += 3.0 * chord / h[:, None]
+    right[1:] += 3.0 * chord / h[:, None]
+    return np.asarray(solveh_banded(bands, right, check_finite=False))

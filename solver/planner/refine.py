@@ -1,0 +1,205 @@
+"""Refinement: a chain made smooth and brought inside every limit (METHODS, section 8, step 3).
+
+From an exact path d, displace it along the self-motion, x = d + n z(t), by the quadratic programme of the linearised
+limits; put the result back on the solutions; again, until nothing moves. Long flights go window by window, each
+joined to the one before with value, slope and bend.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.planner.basis import spline_basis
+from solver.planner.chain import reference_rates
+from solver.planner.curve import closest_all, null_vectors
+from solver.planner.options import PlanOptions
+from solver.planner.programme import Equality, QuadraticProgramme, solve_programme
+from solver.planner.rows import ROW, cost_bands, difference, displaced, fill_row, limit_rows, over_limits
+from solver.rig import Rig
+
+Array = NDArray[np.float64]
+MET = 1e-7  # of a limit: over it by less counts as inside
+NEAR = 0.6  # share of a limit from which its rows are in the programme at once
+STRIDE = 3.0  # rows a knot
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The limits a refinement keeps to, arrays (4,): a rig's, less the reserve."""
+
+    low: Array
+    high: Array
+    rate: Array
+    acceleration: Array
+
+
+def rig_limits(rig: Rig, reserve: float = 0.0) -> Limits:
+    """The rig's limits with `reserve` (a share of them) unused; positions keep 1e-5 rad clear of their ends."""
+    clear = 1e-5 if reserve > 0.0 else 0.0
+    return Limits(
+        rig.position_min + clear, rig.position_max - clear,
+        rig.max_rate * (1.0 - reserve), rig.max_acceleration * (1.0 - reserve),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A path after refinement: angles (n, 4) [rad], how far outside the limits it still is, and where."""
+
+    angles: Array
+    over: float  # largest overrun as a share of the limit; <= 0 inside
+    sample: int  # where that is
+    frame: int
+    limit: int
+    iterations: int
+
+
+def worst(time: Array, angles: Array, limits: Limits, last: int | None = None) -> tuple[float, int, int, int]:
+    """(overrun, sample, frame, limit) of the sample farthest outside, among the first `last`."""
+    over = np.empty((len(time), 3))
+    frame = np.empty((len(time), 3), np.int8)
+    over_limits(time, angles, limits.low, limits.high, limits.rate, limits.acceleration, over, frame)
+    k, kind = np.unravel_index(np.argmax(over[:last]), over[:last].shape)
+    return float(over[k, kind]), int(k), int(frame[k, kind]), int(kind)
+
+
+def refine(
+    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, *,
+    pinned: tuple[bool, bool] = (False, False), start: bool = False, start_rate: Array | None = None,
+    judged: int | None = None, iterations: int | None = None,
+) -> Refined:  # fmt: skip
+    """One window: time (n,), attitude (n, 3, 3), angles (n, 4) exact poses to begin with.
+
+    `pinned` ends keep value, slope and bend; `start` keeps the first pose, `start_rate` (4,) [rad/s] the rate of the
+    first interval. Only the first `judged` samples count for the verdict of the window.
+    """
+    n = len(time)
+    limits = rig_limits(rig, options.reserve)
+    true_limits = rig_limits(rig)
+    d = angles.copy()
+    if n < 2:
+        return Refined(d, *worst(time, d, true_limits), 0)
+    horizontal = rig.geometry.horizontal
+    basis = spline_basis(time, options.knot)
+    spacing = (time[-1] - time[0]) / (n - 1)
+    stride = max(1, int(options.knot / STRIDE / spacing))
+    flags = np.zeros((n, 3), np.uint8)
+    over = np.empty((n, 3))
+    whose = np.empty((n, 3), np.int8)
+    trust = options.trust
+    best: Refined | None = None
+    best_cost = np.inf
+    count = 0
+    for count in range(1, (iterations or options.iterations) + 1):
+        problem = _programme(time, d, rig, limits, options, basis, stride, flags, trust, pinned, start, start_rate)
+        answer = solve_programme(problem[0])
+        moved = np.empty_like(d)
+        displaced(d, problem[1], basis.first, basis.values, answer.coefficients, moved)
+        over_limits(time, moved, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
+        flags |= (over > 1e-6).astype(np.uint8)
+        shift = float(np.abs(answer.coefficients).max())
+        if start:
+            moved[0] = angles[0]
+        fallen = closest_all(rig.axes, horizontal, attitude, moved)
+        result = Refined(moved, *worst(time, moved, true_limits, judged), count)
+        over_limits(time, moved, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
+        flags |= (over > 1e-6).astype(np.uint8)
+        cost = path_cost(time, moved, rig, options, stride)
+        merit = cost + 1e3 * max(0.0, result.over) + 1e3 * fallen
+        reference = best_cost
+        if merit < best_cost:
+            better = best is None or best_cost - merit > 1e-3 * abs(best_cost)
+            best, best_cost = result, merit
+            d = moved
+            if result.over <= MET and (shift < 1e-3 or not better):
+                break
+        else:
+            trust *= 0.3
+        if shift < 1e-7 or trust < 1e-7 or (count > 3 and merit < reference and result.over > 1e3):
+            break
+    assert best is not None
+    return Refined(best.angles, best.over, best.sample, best.frame, best.limit, count)
+
+
+def _programme(
+    time: Array, d: Array, rig: Rig, limits: Limits, options: PlanOptions, basis, stride: int, flags, trust: float,
+    pinned: tuple[bool, bool], start: bool, start_rate: Array | None,
+) -> tuple[QuadraticProgramme, Array]:  # fmt: skip
+    n = np.empty_like(d)
+    null_vectors(rig.geometry.horizontal, d, n)
+    rate_weight, acceleration_weight = cost_weights(rig, options)
+    bands = np.zeros((basis.size, ROW))
+    gradient = np.zeros(basis.size)
+    cost_bands(
+        time, d, n, basis.first, basis.values, stride, rate_weight, acceleration_weight, rig.home, _home_cost(rig, options),
+        options.singularity_margin, options.singularity_cost, bands, gradient,
+    )  # fmt: skip
+    room = 256
+    while True:
+        origin, rows, bound = np.empty(room, np.int64), np.empty((room, ROW)), np.empty(room)
+        tag = np.empty(room, np.int64)
+        count = limit_rows(
+            time, d, n, basis.first, basis.values, stride, flags, trust, limits.low, limits.high,
+            limits.rate, limits.acceleration, NEAR, origin, rows, bound, tag,
+        )  # fmt: skip
+        if count <= room:
+            break
+        room = count
+    equalities = []
+    if start:
+        row = np.zeros(ROW)
+        row[: basis.values.shape[1]] = basis.values[0]
+        equalities.append(Equality(int(basis.first[0]), row, 0.0))
+    if start_rate is not None:
+        row = np.zeros(ROW)
+        at = 0
+        value = 0.0
+        for i in range(4):
+            part = np.zeros(ROW)
+            at = fill_row(1, 1, i, time, n, basis.first, basis.values, part)
+            row += n[0, i] * part
+            value += n[0, i] * (start_rate[i] - difference(1, 1, i, time, d))
+        equalities.append(Equality(at, row, value))
+    problem = QuadraticProgramme(
+        bands, gradient, origin[:count], rows[:count], bound[:count], np.zeros(count, np.int64), trust, pinned,
+        tuple(equalities),
+    )
+    return problem, n
+
+
+def _home_cost(rig: Rig, options: PlanOptions) -> float:
+    return 0.0 if not np.isfinite(rig.position_max).any() else options.home_cost
+
+
+def cost_weights(rig: Rig, options: PlanOptions) -> tuple[Array, Array]:
+    """(rate (4,), acceleration (4,)) weights of the squared differences: each as a share of its limit."""
+    rates = reference_rates(rig)
+    acceleration = np.where(np.isfinite(rig.max_acceleration), rig.max_acceleration, 5.0 * rates)
+    present = rig.axes >= 0
+    return (
+        np.where(present, rig.weight / rates**2, 0.0),
+        np.where(present, options.acceleration_cost * rig.weight / acceleration**2, 0.0),
+    )
+
+
+def path_cost(time: Array, d: Array, rig: Rig, options: PlanOptions, stride: int) -> float:
+    """The cost that the programme models, of a whole path (n, 4) [rad]."""
+    h = np.diff(time)
+    rate = np.diff(d, axis=0) / h[:, None]
+    rate_weight, acceleration_weight = cost_weights(rig, options)
+    total = float(np.sum(rate**2 * rate_weight * h[:, None]))
+    if len(time) > 2:
+        mid = 0.5 * (h[1:] + h[:-1])
+        total += float(np.sum((np.diff(rate, axis=0) / mid[:, None]) ** 2 * acceleration_weight * mid[:, None]))
+    some = d[::stride]
+    span = np.gradient(time[::stride]) if len(some) > 1 else np.ones(1)
+    measure = np.maximum(np.sin(some[:, 1]) ** 2 + np.cos(some[:, 2]) ** 2, 1e-4)
+    short = np.maximum(0.0, options.singularity_margin / measure - 1.0)
+    total += float(np.sum(options.singularity_cost * short * span))
+    home = _home_cost(rig, options)
+    if home:
+        total += float(np.sum(home * (some - rig.home) ** 2 * span[:, None]))
+    return total

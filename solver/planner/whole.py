@@ -1,0 +1,270 @@
+"""`plan`: the whole flight at once (METHODS, section 8)."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from solver.planner.best_effort import BestEffort, least_error
+from solver.planner.chain import Avoid, Chain, Programme
+from solver.planner.curve import polish
+from solver.planner.lead import lead_in, lead_out
+from solver.planner.nodes import OVERLAP, lattice
+from solver.planner.options import PlanOptions
+from solver.planner.path import Path, overrun, refine_path, smooth_curve, stage_samples
+from solver.planner.refine import MET
+from solver.planner.three_axis import three_axis_path, turns_into_range
+from solver.planner.verdict import Margins, Verdict, check, margins
+from solver.rig import FRAMES, LIMITS, Rig
+from solver.solution import EXACT, Blocking, Solution
+from solver.start import start_pose
+
+Array = NDArray[np.float64]
+Progress = Callable[[int, int], None]
+EXCESS = 100.0  # cost of going over a rate limit by its whole, for a flight without a chain
+AVOID_RADIUS = math.radians(30.0)
+AVOID_TIME = 0.4  # [s] before and after
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A flight's plan: the solution, the verdict on it, its margins, and the way from rest to it and back.
+
+    `lead_in`, `lead_out` (m, 4) [rad] at the flight's sample interval, without the flight's own first and last
+    sample; empty where the flight begins or ends at rest, or where `lead_note` says why there is none.
+    """
+
+    solution: Solution
+    verdict: Verdict
+    margins: Margins
+    lead_in: Array
+    lead_out: Array
+    chains: int  # how many chains were refined
+    lead_note: str = ""
+
+
+class _Search:
+    """One flight's search for a path; keeps what the attempts share."""
+
+    def __init__(
+        self, time: Array, attitude: Array, rig: Rig, start: Array | None, start_rate: Array | None, options: PlanOptions,
+        progress: Progress | None,
+    ) -> None:  # fmt: skip
+        self.time, self.attitude, self.rig, self.options, self.progress = time, attitude, rig, options, progress
+        self.start, self.start_rate = start, start_rate
+        self.counted = np.zeros(4, np.bool_)
+        self.avoid: list[Avoid] = []
+        self.chains = 0
+        self.samples = stage_samples(time, options.stage)
+
+    def chain(self, grid: float, slack: float = 0.0, stretch: float = 1.0, excess: float = 0.0) -> Chain:
+        """The cheapest chain on a grid [rad]; turns of the wide frames counted only as far as their ranges need it."""
+        low, high = self.rig.position_min, self.rig.position_max
+        while True:
+            programme = Programme(
+                self.time[self.samples], self.attitude[self.samples], self.rig,
+                lattice(self.rig, grid, self.counted, slack), self.options, slack,
+            )  # fmt: skip
+            programme.avoid = self.avoid
+            programme.stretch, programme.excess = stretch, excess
+            chain = programme.run(self.start, self._report(0.0, 0.5))
+            if not chain.found:
+                return chain
+            angles = chain.angles
+            free = np.isfinite(high) & (high - low >= 2.0 * math.pi) & ~self.counted
+            if self.start is None and free.any():
+                shift = np.zeros(4)
+                shift[free] = turns_into_range(angles[:, free], low[free], high[free])
+                angles += shift
+            outside = free & ((angles.min(axis=0) < low - slack) | (angles.max(axis=0) > high + slack))
+            if not outside.any():
+                return chain
+            self.counted |= outside
+
+    def refine(self, chain: Chain) -> Path:
+        """A path along a chain."""
+        self.chains += 1
+        curve = smooth_curve(self.time, self.attitude, self.rig, self.samples, chain, self.start)
+        return refine_path(
+            self.time, self.attitude, curve, self.rig, self.options, start=self.start is not None,
+            start_rate=self.start_rate, progress=self._report(0.5, 0.5),
+        )  # fmt: skip
+
+    def steer_away(self, path: Path) -> None:
+        """Make the places where a path failed dear to the chains to come."""
+        for failure in path.failures:
+            around = self.time[self.samples] - self.time[failure.sample]
+            stages = np.flatnonzero(np.abs(around) <= max(AVOID_TIME, self.options.stage))
+            if stages.size:
+                self.avoid.append(
+                    Avoid(int(stages[0]), int(stages[-1]), path.angles[self.samples[stages]], AVOID_RADIUS, 5.0)
+                )
+
+    def _report(self, begin: float, share: float) -> Progress | None:
+        if self.progress is None:
+            return None
+        n, tell = len(self.time), self.progress
+
+        def report(done: int, total: int) -> None:
+            tell(min(n - 1, int(n * (begin + share * done / total))), n)
+
+        return report
+
+
+def plan(
+    time: ArrayLike,
+    attitude: ArrayLike,
+    rig: Rig,
+    start: ArrayLike | None = None,
+    start_rate: ArrayLike | None = None,
+    options: PlanOptions | None = None,
+    progress: Progress | None = None,
+    clock: Callable[[], float] | None = None,
+) -> Plan:
+    """Plan a flight: time (n,) [s], attitude (n, 3, 3) body from reference.
+
+    start (4,) [rad]: the flight starts at the exact pose nearest to it; None: wherever is best. start_rate (4,)
+    [rad/s]: the frames' rates over the first interval, as far as the attitude leaves them free; None: free.
+    progress(done, total) is called as the work goes and may raise `CancelledError`; clock reads seconds.
+
+    Raises `InputError` for arrays that are no flight or a start outside the rig's range.
+    """
+    from solver.solve import check_flight, check_start  # solve() itself offers this method
+
+    options = options or PlanOptions()
+    t, C = check_flight(time, attitude)
+    near = check_start(start, rig)
+    rate = None if start_rate is None else np.ascontiguousarray(start_rate, dtype=np.float64)
+    begin = clock() if clock else math.nan
+    if not rig.geometry.redundant:
+        return _finished(t, C, rig, _three_axis(t, C, rig, near, options), 0, begin, clock)
+    at = None
+    if near is not None:
+        at, _ = start_pose(rig, C[0], near)
+    search = _Search(t, C, rig, at, rate if len(t) > 1 else None, options, progress)
+    return _finished(t, C, rig, _fly(search), search.chains, begin, clock)
+
+
+@dataclass(frozen=True)
+class _Flown:
+    """What the search came to: angles (n, 4), iterations (n,), limited codes (n,), and who decided if it failed."""
+
+    angles: Array
+    iterations: NDArray[np.int32]
+    limited: NDArray[np.int16]
+    decided_by: str
+    blocking: Blocking | None
+    grid: float
+
+
+def _fly(search: _Search) -> _Flown:
+    """Chains, refined, until one is inside the limits; else the least error."""
+    options, time, rig = search.options, search.time, search.rig
+    n = len(time)
+    grid = options.grid
+    none = np.zeros(n, np.int16)
+    chain = search.chain(grid)
+    if not chain.found:
+        grid = options.fine_grid
+        wide = search.chain(grid, slack=grid / OVERLAP)
+        if wide.found:
+            chain = search.chain(grid)
+            chain = chain if chain.found else wide
+        else:
+            chain = wide
+    if not chain.found:
+        blocking = Blocking(float(time[search.samples[chain.reached]]), FRAMES[chain.frame], LIMITS[chain.limit])
+        effort = _least_error(search)
+        return _Flown(effort.angles, np.zeros(n, np.int32), effort.limited, LIMITS[chain.limit], blocking, grid)
+    best: tuple[float, Path] | None = None
+    for attempt in range(options.alternatives + 1):
+        path = search.refine(chain)
+        over = overrun(time, path.angles, rig)
+        if best is None or over[0] < best[0]:
+            best = over[0], path
+        if over[0] <= MET:
+            return _Flown(path.angles, path.iterations, none, "checked", None, grid)
+        if attempt == options.alternatives:
+            break
+        search.steer_away(path)
+        following = search.chain(grid)
+        if not following.found:
+            break
+        chain = following
+    assert best is not None
+    path = best[1]
+    _, sample, frame, limit = overrun(time, path.angles, rig)
+    blocking = Blocking(float(time[sample]), FRAMES[frame], LIMITS[limit])
+    effort = least_error(time, search.attitude, path.angles, rig, options, search.start)
+    if not effort.limited.any():  # not even that gave the attitude up
+        return _Flown(effort.angles, path.iterations, effort.limited, "checked", None, grid)
+    return _Flown(effort.angles, path.iterations, effort.limited, "acceleration", blocking, grid)
+
+
+def _least_error(search: _Search) -> BestEffort:
+    """For a flight without a chain: from the chain that is least over the limits, the least attitude error."""
+    search.avoid.clear()
+    for stretch, slack in ((4.0, 0.0), (4.0, 0.5), (1e6, 0.5), (1e6, math.pi)):
+        chain = search.chain(search.options.grid, slack=slack, stretch=stretch, excess=EXCESS)
+        if chain.found:
+            break
+    else:
+        chain = Chain(np.repeat(search.rig.home[None], len(search.samples), axis=0), math.inf, 0)
+    path = search.refine(chain)
+    return least_error(search.time, search.attitude, path.angles, search.rig, search.options, search.start)
+
+
+STATEMENTS = {
+    "checked": "Feasible: every sample, and half-way between samples, checked by code apart from the planner.",
+    "position": "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
+    "no chain of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
+    "Grid-complete away from the singularity, not a theorem.",
+    "rate": "Infeasible: no chain of nodes obeys the rate limits past the blocking time, even with every edge widened by the "
+    "grid's covering step. Grid-complete away from the singularity, not a theorem.",
+    "acceleration": "Infeasible as far as the search went: chains inside the rate limits exist, but none that was refined came "
+    "inside every limit; the blocking place is the worst of the best one. Evidence, not a proof.",
+    "three-axis": "Infeasible: a three-axis rig has no freedom but the choice of the Euler set and its turns.",
+}
+
+
+def _finished(
+    time: Array, attitude: Array, rig: Rig, flown: _Flown, chains: int, begin: float, clock: Callable[[], float] | None
+) -> Plan:
+    angles = flown.angles
+    if rig.geometry.redundant and not flown.limited.any():
+        polish(rig.geometry.horizontal, attitude, angles)
+    elif rig.geometry.redundant:
+        exact = flown.limited == EXACT
+        kept = np.ascontiguousarray(angles[exact])
+        polish(rig.geometry.horizontal, np.ascontiguousarray(attitude[exact]), kept)
+        angles[exact] = kept
+    found = check(time, attitude, angles, rig)
+    blocking, decided_by = flown.blocking, flown.decided_by
+    if blocking is None and found.violations:
+        first = found.violations[0]
+        blocking = Blocking(first.time, first.frame, first.limit)
+        decided_by = "acceleration" if rig.geometry.redundant else "three-axis"
+    verdict = Verdict(blocking is None, blocking, decided_by, flown.grid, STATEMENTS[decided_by], found.between)
+    inn, in_note = lead_in(time[:3], angles[:3], rig)
+    out, out_note = lead_out(time[-3:], angles[-3:], rig)
+    elapsed = (clock() - begin) if clock else math.nan
+    solution = Solution(
+        "plan", rig, time, angles, found.error, found.matrix_error, flown.limited, flown.iterations,
+        np.full(len(time), elapsed / len(time)), elapsed, blocking,
+    )  # fmt: skip
+    note = "; ".join(part for part in (in_note, out_note) if part)
+    return Plan(solution, verdict, margins(time, angles, rig), inn, out, chains, note)
+
+
+def _three_axis(time: Array, attitude: Array, rig: Rig, start: Array | None, options: PlanOptions) -> _Flown:
+    """Without freedom: the Euler angles; where they leave the limits, the least error inside them."""
+    angles = three_axis_path(time, attitude, rig, start)
+    over, sample, frame, limit = overrun(time, angles, rig)
+    iterations, limited = np.zeros(len(time), np.int32), np.zeros(len(time), np.int16)
+    if over <= MET:
+        return _Flown(angles, iterations, limited, "checked", None, math.nan)
+    effort = least_error(time, attitude, angles, rig, options)
+    blocking = Blocking(float(time[sample]), FRAMES[frame], LIMITS[limit])
+    return _Flown(effort.angles, iterations, effort.limited, "three-axis", blocking, math.nan)
