@@ -8,7 +8,6 @@ is the step s = x - d rather than x, which costs no digits at large angles.
 """
 
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,39 +48,35 @@ from solver.tracking import (
 Array = NDArray[np.float64]
 
 
-class Mode(StrEnum):
-    """What the step is asked for."""
-
-    OPEN_LOOP = "open_loop"  # the flight's own increment, as in the paper: the linearisation's error adds up
-    CLOSED_LOOP = "closed_loop"  # the increment from the present attitude to the next: no drift
-    EXACT = "exact"  # closed loop, then the exact solution curve
+# What the step is asked for: the flight's own increment, as in the paper, whose linearisation error adds up; the
+# increment from the present attitude to the next, which does not drift; that, and then the exact solution curve.
+OPEN_LOOP, CLOSED_LOOP, EXACT_MODE = MODES = ("open_loop", "closed_loop", "exact")
 
 
 @dataclass(frozen=True)
 class AlmOptions:
     """Raises `MethodError` where a value is out of range.
 
-    penalty: r of the first iteration; growth: beta, its factor from one to the next; max_penalty: where it stops
-    growing; residual: |h| [rad] and complementarity at which the iteration stops; max_iterations: the cap.
-    avoidance, centring [rad/s], homing [1/s], recovery: as in `ExactOptions`; zero gains are the paper's method.
+    mode: `open_loop`, `closed_loop` or `exact` (`MODES`). penalty: r of the first iteration; growth: beta, its factor
+    from one to the next; max_penalty: where it stops growing; residual: |h| [rad] and complementarity at which the
+    iteration stops; max_iterations: the cap.
+    avoidance, centring [rad/s], homing [1/s], recovery: as in `ExactOptions`; with zero gains f is the paper's.
     """
 
-    mode: Mode = Mode.EXACT
+    mode: str = "exact"
     penalty: float = 10.0
-    growth: float = 4.0
+    growth: float = 3.0
     max_penalty: float = 1e8
-    residual: float = 1e-12
+    residual: float = 1e-13
     max_iterations: int = 30
-    avoidance: float = 0.0
-    centring: float = 0.0
+    avoidance: float = 2.0
+    centring: float = 2.0
     homing: float = 0.0
     recovery: float = 0.5
 
     def __post_init__(self) -> None:
-        try:
-            object.__setattr__(self, "mode", Mode(self.mode))
-        except ValueError:
-            raise MethodError(f"option mode = {self.mode!r}: expected one of {', '.join(Mode)}") from None
+        if self.mode not in MODES:
+            raise MethodError(f"option mode = {self.mode!r}: expected one of {', '.join(MODES)}")
         for name, least, most in (
             ("penalty", 1e-3, 1e8),
             ("growth", 1.0, 1e3),
@@ -177,7 +172,8 @@ def alm_block(
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 
-    gains: avoidance, centring, homing, recovery; tuning: as in `multiplier_step`; feedback: close the loop; exact: project.
+    gains: avoidance, centring, homing, recovery; tuning: of `multiplier_step`; feedback: close the loop;
+    exact: put the sample on the exact solution curve.
     """
     work = np.empty((ROWS, 4))
     room = np.empty((MULTIPLIER_ROWS, 5))
@@ -261,8 +257,8 @@ class AlmStepper:
             self._table,
             self._gains,
             self._tuning,
-            self._mode is not Mode.OPEN_LOOP,
-            self._mode is Mode.EXACT,
+            self._mode != OPEN_LOOP,
+            self._mode == EXACT_MODE,
             time,
             attitude,
             self._state,

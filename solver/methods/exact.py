@@ -49,7 +49,7 @@ class ExactOptions:
     to the attitude after a limited sample.
     """
 
-    avoidance: float = 1.0
+    avoidance: float = 2.0
     centring: float = 2.0
     homing: float = 0.0
     recovery: float = 0.5
