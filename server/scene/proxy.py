@@ -82,9 +82,13 @@ def _get(port: int, path: str) -> tuple[int, dict[str, str], bytes]:
         connection.close()
 
 
-@router.websocket("/scene/{rig}/{path:path}")
-async def socket(browser: WebSocket, rig: str, path: str) -> None:
-    """Join the browser's WebSocket to the rig's viser server, subprotocol and frames as they are."""
+@router.websocket("/scene/{rig}")
+@router.websocket("/scene/{rig}/")
+async def socket(browser: WebSocket, rig: str) -> None:
+    """Join the browser's WebSocket to the rig's viser server, subprotocol and frames as they are.
+
+    viser's page asks for its own address without the slash at the end.
+    """
     port = _port(browser, rig)
     if port is None:
         await browser.close(4404, f"no scene {rig!r} is running")
@@ -92,7 +96,7 @@ async def socket(browser: WebSocket, rig: str, path: str) -> None:
     offered = [Subprotocol(name) for name in browser.scope.get("subprotocols", [])]
     try:
         viser = await connect(
-            f"ws://127.0.0.1:{port}/{path}",
+            f"ws://127.0.0.1:{port}/",
             subprotocols=offered or None,
             compression=None,
             max_size=MESSAGE_BYTES,

@@ -8,12 +8,13 @@ Node tree, each frame relative to the one around it:
     /target                                      the flight's attitude, a triad
 """
 
-import contextlib
-import io
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import rich
 import trimesh
 import viser
 from numpy.typing import ArrayLike, NDArray
@@ -40,6 +41,17 @@ class _Viser(viser.ViserServer):
         return None
 
 
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """viser prints through rich when it starts and stops, whatever `verbose` says; stdout belongs to the program."""
+    console = rich.get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = before
+
+
 @dataclass(frozen=True)
 class Pose:
     """What is to be seen: angles (4,) [rad], base first; target (4,) quaternion (w, x, y, z) or None."""
@@ -59,8 +71,7 @@ class RigScene:
         payload = None if mesh is None else load_mesh(mesh)
         self._rig = rig
         self._machine = build(rig.geometry, size_m or (0.3, 0.2, 0.2), payload)
-        # viser prints a banner, whatever `verbose` says; stdout belongs to the program.
-        with contextlib.redirect_stdout(io.StringIO()):
+        with _quiet():
             self._server = _Viser(host="127.0.0.1", port=0, label=name, verbose=False)
         self._shown: Pose | None = None
         self._previewed: tuple[Array, Array | None] | None = None
@@ -77,9 +88,15 @@ class RigScene:
         """The port viser listens on, loopback only."""
         return int(self._server.get_port())
 
+    @property
+    def viewers(self) -> int:
+        """How many browsers are looking."""
+        return len(self._server.get_clients())
+
     def stop(self) -> None:
         """Close the server and every browser's connection to it."""
-        self._server.stop()
+        with _quiet():
+            self._server.stop()
 
     def show(self, pose: Pose) -> bool:
         """Bring the nodes to `pose`; returns whether anything was sent."""

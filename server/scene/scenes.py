@@ -74,6 +74,10 @@ class SceneServer:
         """The loopback port of a scene. Raises `UnknownSceneError`."""
         return self._running(name).scene.port
 
+    def viewers(self, name: str) -> int:
+        """How many browsers look at a scene. Raises `UnknownSceneError`."""
+        return self._running(name).scene.viewers
+
     def names(self) -> list[str]:
         """The scenes that are running."""
         with self._lock:
