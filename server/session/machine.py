@@ -128,7 +128,7 @@ class SessionMachine:
         if command is Command.LOAD:
             self._check_loadable(binding)
         if command is Command.ARM:
-            self._check_pair(binding)
+            self.check_pair(binding)
         if command not in NEEDS_NO_LEASE:
             self._lease = self._lease.checked(who, token, now)
         if command is Command.ACKNOWLEDGE:
@@ -225,8 +225,8 @@ class SessionMachine:
         if (binding.rig, binding.rig_hash) != (self.rig, self.rig_hash):
             raise BindingError("the plan's rig", self.rig_hash, binding.rig_hash)
 
-    def _check_pair(self, asked: Binding | None) -> None:
-        """The pair in memory, and the pair that the caller names if any, are the pair that was loaded."""
+    def check_pair(self, asked: Binding | None) -> None:
+        """Raise where the rig, or the pair that the caller names if any, is not the pair that was loaded."""
         bound = self.binding
         if bound is None:
             raise NotReadyError("nothing_loaded", "nothing is loaded: load a plan")

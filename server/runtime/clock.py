@@ -1,0 +1,64 @@
+"""Time for the loop: absolute deadlines on the monotonic clock, real-time scheduling, locked memory.
+
+Lateness is how long after its deadline a tick begins. A tick that begins a whole period late has missed its deadline;
+the deadlines it slept through are left out, not caught up: a burst of commands would be faster than the rig's limits.
+"""
+
+import ctypes
+import ctypes.util
+import gc
+import os
+import time
+
+_MCL_CURRENT, _MCL_FUTURE = 1, 2
+
+
+def go_realtime(priority: int | None, cpu: int | None) -> str:
+    """Ask for SCHED_FIFO and locked memory; says in words what was granted and, if not, how to get it."""
+    if cpu is not None:
+        os.sched_setaffinity(0, {cpu})
+    if priority is None:
+        return "off: not asked for"
+    try:
+        # Children (there should be none) must not inherit it.
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(priority))
+    except (PermissionError, OSError) as refusal:
+        return f"off: SCHED_FIFO refused ({refusal.strerror}); give CAP_SYS_NICE, or ulimit -r {priority}"
+    libc = ctypes.CDLL(ctypes.util.find_library("c"), use_errno=True)
+    if libc.mlockall(_MCL_CURRENT | _MCL_FUTURE) != 0:
+        why = os.strerror(ctypes.get_errno())
+        return f"on: SCHED_FIFO {priority}; memory not locked ({why}): give CAP_IPC_LOCK, or ulimit -l unlimited"
+    return f"on: SCHED_FIFO {priority}, memory locked"
+
+
+def still_collector() -> None:
+    """Keep the garbage collector out of the loop; the loop collects by itself while the rig is at rest."""
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+
+
+class Deadlines:
+    """Deadlines every `period_ns`, from the first `wait` on."""
+
+    def __init__(self, period_ns: int) -> None:
+        self.period_ns = period_ns
+        self._next = 0
+
+    def wait(self) -> tuple[int, int, int]:
+        """Sleep until the next deadline: (now, lateness, deadlines missed), [ns] and a count."""
+        now = time.monotonic_ns()
+        if self._next == 0:
+            self._next = now + self.period_ns
+        ahead = self._next - now
+        if ahead > 0:
+            time.sleep(ahead / 1e9)
+            now = time.monotonic_ns()
+        lateness = now - self._next
+        missed = lateness // self.period_ns if lateness > 0 else 0
+        self._next += self.period_ns * (missed + 1)
+        return now, max(0, lateness), missed
+
+    def restart(self) -> None:
+        """Begin anew at the next `wait`: after work at rest that was allowed to take long."""
+        self._next = 0

@@ -1,0 +1,80 @@
+"""The rig process's end of the control socket: polled once a tick, never blocking, a few messages at a time."""
+
+import select
+import socket
+from collections.abc import Callable
+
+import msgspec
+
+from server.runtime import wire
+from server.runtime.place import Place, control_socket
+
+_PER_TICK = 4
+_CLIENTS = 8
+
+
+class ControlServer:
+    """Listens in a rig's directory. `poll` answers what has come."""
+
+    def __init__(self, place: Place, handle: Callable[[wire.Request], wire.Answer]) -> None:
+        self._handle = handle
+        self._listener = control_socket()
+        with place.socket_address("control.sock") as address:
+            (place.directory / "control.sock").unlink(missing_ok=True)
+            self._listener.bind(address)
+        self._listener.listen(_CLIENTS)
+        self._clients: dict[int, socket.socket] = {}
+        self._poll = select.epoll()
+        self._poll.register(self._listener.fileno(), select.EPOLLIN)
+
+    def poll(self) -> None:
+        """Handle at most a few waiting messages: a full queue takes many ticks, and the loop stays on time."""
+        for fd, _ in self._poll.poll(0, _PER_TICK):
+            if fd == self._listener.fileno():
+                self._accept()
+            else:
+                self._read(fd)
+
+    def close(self) -> None:
+        """Close every connection."""
+        for client in self._clients.values():
+            client.close()
+        self._poll.close()
+        self._listener.close()
+
+    def _accept(self) -> None:
+        try:
+            client, _ = self._listener.accept()
+        except OSError:
+            return  # gone before we came
+        if len(self._clients) >= _CLIENTS:
+            client.close()
+            return
+        client.setblocking(False)
+        self._clients[client.fileno()] = client
+        self._poll.register(client.fileno(), select.EPOLLIN)
+
+    def _read(self, fd: int) -> None:
+        client = self._clients[fd]
+        try:
+            packet = client.recv(1 << 16)
+        except BlockingIOError:
+            return
+        except OSError:
+            packet = b""
+        if not packet:
+            self._drop(fd)
+            return
+        try:
+            request = wire.decode_request(packet)
+        except (msgspec.DecodeError, UnicodeDecodeError):
+            self._drop(fd)  # not our server: it gets no second try
+            return
+        try:
+            client.send(wire.encode(self._handle(request)))
+        except OSError:
+            self._drop(fd)  # it does not read its answers
+
+    def _drop(self, fd: int) -> None:
+        self._poll.unregister(fd)
+        self._clients.pop(fd).close()

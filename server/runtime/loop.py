@@ -1,0 +1,442 @@
+"""The rig's loop: one tick after another, each on its deadline.
+
+A tick: E-stop and stop flags, waiting commands, read the drive, judge what it did, propose the next command, guard it,
+write it, record it. Nothing here blocks but what the session allows at rest (connecting, loading).
+"""
+
+import gc
+import math
+import subprocess
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from server.drives.base import Drive, Status
+from server.plan_folder import rig_hash
+from server.runtime import telemetry, wire
+from server.runtime.clock import Deadlines
+from server.runtime.config import RigConfig
+from server.runtime.control import ControlServer
+from server.runtime.desk import Desk
+from server.runtime.guard import Finding, Guard
+from server.runtime.motion import Mode, Motion
+from server.runtime.place import Place
+from server.runtime.shared import BUCKETS, Shared
+from server.session.alarms import Severity
+from server.session.machine import SessionMachine, Silence
+from server.session.states import IN_MOTION, Action, Command, Event, State
+
+_RAD = math.pi / 180.0
+_DEG = 180.0 / math.pi
+_AT_REST = 0.5 * _RAD  # [rad/s] a table slower than this that brakes by itself counts as stopped
+_BRAKE_TIMEOUT_S = 5.0
+_COLLECT_S = 10.0
+_PUBLISH_S = 0.25  # at least this often, so that the lease's age and the recorder's word are fresh
+
+
+class RigLoop:
+    """Everything one rig process does. `run` returns when the process should end."""
+
+    def __init__(
+        self,
+        config: RigConfig,
+        drive: Drive,
+        shared: Shared,
+        place: Place,
+        realtime: str,
+        start_recorder: Callable[[], "subprocess.Popen[bytes]"],
+        recorder: "subprocess.Popen[bytes]",
+    ) -> None:
+        self.config = config
+        self.rig = config.rig
+        self.drive = drive
+        self.shared = shared
+        self.realtime = realtime
+        self.dt = 1.0 / config.rate_hz
+        self.deadlines = Deadlines(round(1e9 / config.rate_hz))
+        self.machine = SessionMachine(config.rig.name, rig_hash(config.rig), config.owner)
+        self.motion = Motion(config.rig, config.motion, config.rate_hz)
+        self.guard = Guard(config.rig, config.guard, self.dt)
+        self.enabled = False  # we write to the drive
+        self.run_id: str | None = None
+        self.ending = False
+        self._ending_wanted = False
+        self.measured = np.array(config.rig.home)
+        self._measured_rate = np.zeros(4)
+        self._drive_brakes = False  # the drive was told to brake by itself: our commands no longer count
+        self._drive_brakes_since = 0.0
+        self._disable_at_rest = False
+        self._start_recorder = start_recorder
+        self._recorder = recorder
+        self._server_silence = Silence(config.server)
+        self._warned: set[tuple[str, str | None]] = set()
+        self._status = 0
+        self._sequence = 0
+        self._tick = 0
+        self._misses: list[float] = []
+        self._collected = self._published_at = 0.0
+        self._idle_since = time.monotonic()
+        self._published = -1
+        self._header = shared.header
+        self._row = np.zeros(1, telemetry.SAMPLE)
+        self._desk = Desk(self)
+        self._control = ControlServer(place, self._desk.answer)
+        self._header["period_ns"] = self.deadlines.period_ns
+        if config.after_loss is not None:
+            self.alarm("rig_process_lost", Severity.FAULT, config.after_loss)
+
+    # --- the loop ---
+
+    def run(self) -> None:
+        """Tick until told to end, or nobody needs this process any more."""
+        self.publish()
+        while not self.ending:
+            now_ns, lateness_ns, missed = self.deadlines.wait()
+            self.tick(now_ns, lateness_ns, missed)
+        self._control.close()
+        self.drive.disable()
+        self.drive.close()
+
+    def terminate(self) -> None:
+        """On SIGTERM: E-stop where the rig moves; end when it is at rest."""
+        self._ending_wanted = True
+
+    def tick(self, now_ns: int, lateness_ns: int, missed: int) -> None:
+        """One tick at `now_ns` [ns, monotonic]."""
+        header = self._header
+        now = now_ns / 1e9
+        header["rig_beat_ns"] = now_ns
+        self._lanes(now)
+        self._control.poll()
+        if self._ending_wanted:
+            self._end_when_at_rest(now)
+        self._status = self.drive.read(now, self.measured, self._measured_rate) if self.machine.linked else 0
+        if self.machine.linked:
+            self._judge_drive()
+        error = self._judge_measured(now)
+        self._judge_time(now, lateness_ns, missed)
+        if self._tick % 16 == 0:
+            self._silences(now)
+        self._move(now)
+        self._record(now_ns, lateness_ns, missed, error)
+        self._tick += 1
+        self._after(now, now_ns, lateness_ns)
+
+    # --- orders ---
+
+    def report(self, event: Event) -> None:
+        """Tell the session what happened, and do what it orders."""
+        before = self.machine.state
+        self.do(self.machine.event(event))
+        if self.machine.state is not before:
+            self.note("transition", before=before, after=self.machine.state, trigger=str(event))
+
+    def do(self, actions: tuple[Action, ...]) -> None:
+        """Do what the session ordered. Orders that need arguments are prepared by the desk."""
+        for action in actions:
+            match action:
+                case Action.RUN:
+                    self.motion.run()
+                case Action.HOLD:
+                    self.motion.hold(True)
+                case Action.RESUME:
+                    self.motion.hold(False)
+                case Action.BRAKE:
+                    self.motion.brake(fastest=False)
+                case Action.BRAKE_FASTEST:
+                    self._brake_fastest()
+                case Action.DISABLE_AT_REST:
+                    self._disable_at_rest = True
+                case Action.DISABLE:
+                    self.power_off()
+                case Action.UNBIND:
+                    self.motion.unload()
+                    self._warned.clear()
+                case Action.CLEAR:
+                    self._warned.clear()
+                    self._disable_at_rest = False
+        if Action.BRAKE_FASTEST in actions and not self.machine.moving:
+            self._rest()
+        if self.run_id is not None and self.machine.state not in IN_MOTION and not self.machine.moving:
+            self.note("run_end", run_id=self.run_id, head=self.shared.ring.head, state=self.machine.state)
+            self.run_id = None
+
+    def begin_run(self, who: str) -> None:
+        """A flight begins: the recorder opens a file."""
+        stamp = time.strftime("%Y%m%dT%H%M%S", time.gmtime())
+        self.run_id = f"{stamp}-{self.config.name}-{time.time_ns() // 1000 % 1000000:06d}"
+        bound = self.machine.binding
+        plan = {} if bound is None else asdict(bound)
+        self.note("run_begin", run_id=self.run_id, who=who, head=self.shared.ring.head, plan=plan)
+
+    def estop_alarm(self, who: str) -> None:
+        """The alarm of an E-stop."""
+        self.alarm("estop", Severity.EMERGENCY, f"E-stop by {who or 'an unnamed operator'}")
+
+    def power_off(self) -> None:
+        """Disable the drive; from here on the command is where the table stands."""
+        self.drive.disable()
+        self.enabled = False
+        self._drive_brakes = False
+
+    def _brake_fastest(self) -> None:
+        if self.enabled and not self._drive_brakes and self.machine.moving:
+            self.motion.brake(fastest=True)
+
+    def _let_drive_brake(self, now: float) -> None:
+        """Commands cannot be trusted to reach the frames: the drive's own brakes must do it."""
+        self.drive.brake()
+        self._drive_brakes = True
+        self._drive_brakes_since = now
+
+    def _rest(self) -> None:
+        """At rest after an E-stop or a fault: brakes on."""
+        if self._disable_at_rest:
+            self.power_off()
+        elif self.machine.state is State.FAULTED and self.enabled:
+            self.drive.brake()
+            self.enabled = False
+
+    def _end_when_at_rest(self, now: float) -> None:
+        if not self.machine.moving:
+            self.ending = True
+        elif self.machine.state is not State.ESTOPPED:
+            self._desk.lane(Command.ESTOP, "SIGTERM", now)
+
+    # --- judging ---
+
+    def _lanes(self, now: float) -> None:
+        header = self._header
+        for lane, command in (("estop", Command.ESTOP), ("stop", Command.STOP)):
+            asked = int(header[f"{lane}_request_ns"][0])
+            if asked == int(header[f"{lane}_done_ns"][0]):
+                continue
+            who = bytes(header[f"{lane}_who"][0]).decode("utf-8", "replace")
+            self._desk.lane(command, who, now)
+            header[f"{lane}_done_ns"] = asked
+
+    def _judge_drive(self) -> None:
+        status = self._status
+        now = time.monotonic()
+        if status & Status.LINK_LOST:
+            self.enabled = self._drive_brakes = False
+            self.alarm("link_lost", Severity.FAULT, f"drive {self.drive.name}: link lost; the drive brakes by itself")
+            self.report(Event.LINK_LOST)
+            self.drive.close()
+        elif self.enabled and not self._drive_brakes and status & (Status.FAULT | Status.ENCODER | Status.WATCHDOG):
+            word = "encoder" if status & Status.ENCODER else "watchdog" if status & Status.WATCHDOG else "fault"
+            frame = None
+            lost = np.flatnonzero(~np.isfinite(self.measured))
+            if len(lost):
+                frame = ("base", "outer", "middle", "inner")[int(lost[0])]
+            told = {
+                "encoder": f"{frame} frame: no position from its encoder",
+                "watchdog": "no command reached the drive in time: it brakes by itself",
+                "fault": "the drive reports a fault",
+            }[word]
+            self._let_drive_brake(now)
+            self.trip(Finding(f"drive_{word}", True, told, frame, math.nan, math.nan, ""))
+        elif self.enabled and status & Status.STALE_WRITE:
+            self.warn(Finding("stale_write", False, "the drive refused an old command", None, math.nan, math.nan, ""))
+
+    def _judge_measured(self, now: float) -> float:
+        """The tracking error [rad]; nan where nothing is followed."""
+        motion = self.motion
+        if not self.enabled or self._drive_brakes:
+            return math.nan
+        error, found = self.guard.measured(self.measured, motion.x1, motion.q1)
+        if found is not None:
+            if found.trips and found.code == "following_error":
+                self._let_drive_brake(now)
+            self.judge(found)
+        return error
+
+    def _judge_time(self, now: float, lateness_ns: int, missed: int) -> None:
+        if missed:
+            self._header["misses"] += missed
+            self._misses = [t for t in self._misses if now - t < 1.0] + [now] * min(missed, 5000)
+            if self.enabled and self.machine.moving:
+                found = self.guard.scalar("lateness", lateness_ns / 1e6, self.config.guard.lateness_ms, "ms")
+                count = float(len(self._misses))
+                found = found or self.guard.scalar("missed_deadlines", count, self.config.guard.misses_per_s, "in 1 s")
+                if found is not None:
+                    self.judge(found)
+
+    def _silences(self, now: float) -> None:
+        owned = self.machine.state in IN_MOTION or self.machine.state is State.ARMED
+        if not owned:
+            return
+        for event in self.machine.silence(now):
+            self._silent("owner_silent", "the lease's holder is silent", event)
+        beat = int(self._header["server_beat_ns"][0]) / 1e9
+        for event in self._server_silence.due(now - beat):
+            self._silent("server_silent", "the server is silent", event)
+
+    def _silent(self, code: str, told: str, event: Event) -> None:
+        before = self.machine.state
+        self.report(event)
+        if self.machine.state is not before:
+            self.alarm(code, Severity.WARNING, f"{told}: {before} -> {self.machine.state}")
+
+    def judge(self, found: Finding) -> None:
+        """A finding of the guard: brake, or warn."""
+        if found.trips:
+            self.trip(found)
+        else:
+            self.warn(found)
+
+    def trip(self, found: Finding) -> None:
+        """Latch the fault and brake."""
+        self._raise(found, Severity.FAULT)
+        self.report(Event.FAULT)
+
+    def warn(self, found: Finding) -> None:
+        """Raise a warning, once until a reset or unload."""
+        if (found.code, found.frame) not in self._warned:
+            self._warned.add((found.code, found.frame))
+            self._raise(found, Severity.WARNING)
+
+    def _raise(self, found: Finding, severity: Severity) -> None:
+        value = found.value if math.isfinite(found.value) else None
+        limit = found.limit if math.isfinite(found.limit) else None
+        unit = found.unit or None
+        self.alarm(found.code, severity, found.message, frame=found.frame, value=value, limit=limit, unit=unit)
+
+    # --- moving ---
+
+    def _move(self, now: float) -> None:
+        motion = self.motion
+        if not self.enabled or self._drive_brakes:
+            if np.isfinite(self.measured).all():
+                motion.rest_at(self.measured)
+            if self.machine.moving:
+                stopped = np.abs(self._measured_rate).max() < _AT_REST
+                if stopped or now - self._drive_brakes_since > _BRAKE_TIMEOUT_S:
+                    self.report(Event.AT_REST)
+                    self._rest()
+            return
+        event = motion.tick()
+        if event is Event.SOURCE_LOST:
+            self.report(event)
+            event = motion.tick()
+        found = self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)
+        if found is not None:
+            event = None
+            motion.brake(fastest=True)
+            self.trip(found)
+            if motion.tick() is Event.AT_REST:
+                event = Event.AT_REST
+            self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)
+        self._sequence += 1
+        self.drive.write(motion.x, motion.v, motion.a, self.machine.epoch, self._sequence)
+        motion.commit()
+        if event is not None:
+            self.report(event)
+            if event is Event.AT_REST:
+                self._rest()
+
+    # --- telling ---
+
+    def alarm(self, code: str, severity: Severity, message: str, **evidence: Any) -> None:
+        """Raise an alarm and note it."""
+        raised = self.machine.alarm(code, severity, message, time.time(), **evidence)
+        if raised.count == 1:
+            self.note("alarm", **asdict(raised))
+
+    def note(self, kind: str, **content: Any) -> None:
+        """Add an event for the recorder and the server's audit log."""
+        self.shared.add_event({"kind": kind, "time_ns": time.monotonic_ns(), "wall_ns": time.time_ns(), **content})
+
+    def publish(self) -> None:
+        """Publish the session's snapshot."""
+        now_ns = time.monotonic_ns()
+        machine, bound = self.machine, self.machine.binding
+        ref = None
+        if bound is not None:
+            info = None if self._desk.plan is None else self._desk.plan.info
+            name, duration = ("", None) if info is None else (info.name, info.duration_s)
+            ref = wire.PlanRef(bound.plan_id, bound.plan_hash, bound.rig_hash, bound.live, name, duration)
+        lease = machine.lease(now_ns / 1e9)
+        heard = now_ns - int(1e9 * (self.config.owner.hold_s - (lease.expires_s or 0.0)))
+        published = wire.Published(
+            rig=self.config.name,
+            state=machine.state,
+            revision=machine.revision,
+            allowed=[str(c) for c in machine.allowed()],
+            lease=lease,
+            lease_heard_ns=heard,
+            lease_silent_s=self.config.owner.hold_s,
+            plan=ref,
+            alarms=list(machine.alarms.standing),
+            history=list(machine.alarms.history[-64:]),
+            realtime=self.realtime,
+            run_id=self.run_id,
+            drive=self.drive.name,
+        )
+        self.shared.publish(wire.encode(published), machine.revision)
+        self._published = machine.revision
+        self._published_at = now_ns / 1e9
+
+    def _record(self, now_ns: int, lateness_ns: int, missed: int, error: float) -> None:
+        row, motion = self._row, self.motion
+        machine = self.machine
+        row["time_ns"] = now_ns
+        row["wall_ns"] = time.time_ns()
+        row["state"] = machine.state.code
+        flags = telemetry.LATE if missed else 0
+        flags |= telemetry.ENABLED if self.enabled else 0
+        if motion.mode is Mode.BRAKE or self._drive_brakes or self._status & Status.BRAKING:
+            flags |= telemetry.BRAKING
+        if motion.mode is Mode.PATH and math.isnan(motion.q[0]):
+            flags |= telemetry.LEAD
+        row["flags"] = flags
+        row["revision"] = machine.revision
+        row["path_time_s"] = motion.path_time_s
+        row["path_scale"] = motion.path_scale
+        np.multiply(motion.x, _DEG, out=row["demand"][0])
+        np.multiply(motion.v, _DEG, out=row["demand_rate"][0])
+        np.multiply(motion.a, _DEG, out=row["demand_acceleration"][0])
+        np.multiply(self.measured, _DEG, out=row["measured"][0])
+        np.multiply(self._measured_rate, _DEG, out=row["measured_rate"][0])
+        row["target"] = motion.q
+        row["solve_error_deg"] = motion.solve_error(self.rig.axes) * _DEG
+        row["tracking_error_deg"] = error * _DEG
+        if self.enabled:
+            np.multiply(self.guard.following, _DEG, out=row["following_error_deg"][0])
+        else:
+            row["following_error_deg"] = 0.0
+        row["margin"] = self.guard.margin
+        row["lateness_us"] = lateness_ns / 1e3
+        row["tick"] = self._tick
+        self.shared.ring.append(row)
+
+    def _after(self, now: float, now_ns: int, lateness_ns: int) -> None:
+        header = self._header
+        header["ticks"] += 1
+        self.shared.histogram[min(lateness_ns // 1000, BUCKETS - 1)] += 1
+        if lateness_ns > int(header["max_lateness_ns"][0]):
+            header["max_lateness_ns"] = lateness_ns
+        if self.machine.revision != self._published or now - self._published_at > _PUBLISH_S:
+            self.publish()
+        resting = self.machine.state in (State.DISCONNECTED, State.IDLE, State.READY)
+        if resting and now - self._collected > _COLLECT_S:
+            self._at_leisure()
+            self._collected = now
+            self.deadlines.restart()
+        if not resting or now - int(header["server_beat_ns"][0]) / 1e9 < 1.0:
+            self._idle_since = now
+        elif now - self._idle_since > self.config.exit_idle_s:
+            self.note("exit", why=f"at rest, and no server for {self.config.exit_idle_s:g} s")
+            self.ending = True
+        busy = time.monotonic_ns() - now_ns
+        header["busy_ns"] = (int(header["busy_ns"][0]) * 63 + busy) // 64
+
+    def _at_leisure(self) -> None:
+        """What only a rig at rest has time for."""
+        gc.collect()
+        if self._recorder.poll() is not None:
+            self._recorder = self._start_recorder()
+            self.note("recorder_restarted", pid=self._recorder.pid)

@@ -1,0 +1,159 @@
+"""The recorder: a process of its own, at ordinary priority, that writes every run as it happens.
+
+`python -m server.runtime.recorder --memory FILE --runs DIR`: reads the shared ring and the loop's events, and keeps
+the last second before a run too. Ends when its parent does, after the record is complete.
+"""
+
+import argparse
+import contextlib
+import os
+import shutil
+import time
+from pathlib import Path
+from typing import Any
+
+from server.runtime.record import RunRecord
+from server.runtime.shared import Shared
+
+CYCLE_S = 0.05
+CHUNK_S = 0.1
+_BATCH = 4096
+_SYNC_S = 1.0
+_STATISTICS_S = 1.0
+
+
+class Recorder:
+    """Follows one rig's shared memory."""
+
+    def __init__(self, shared: Shared, runs: Path) -> None:
+        self._shared = shared
+        self._header = shared.header
+        self._runs = runs
+        self._record: RunRecord | None = None
+        self._next = shared.ring.head  # last sequence that was taken
+        self._events = int(self._header["event_head"][0])
+        self._until: int | None = None  # last sequence of a run that has ended
+        self._cut_at = self._statistics_at = self._space_at = 0.0
+
+    def cycle(self, now: float) -> None:
+        """Take what is new; `now` [s, monotonic]."""
+        self._header["recorder_beat_ns"] = time.monotonic_ns()
+        if now - self._space_at > 1.0:
+            self._space_at = now
+            with contextlib.suppress(OSError):
+                self._header["recorder_free_bytes"] = shutil.disk_usage(self._runs).free
+        events, self._events = self._shared.events_since(self._events)
+        for event in events:
+            if event["kind"] == "run_begin":
+                self._begin(event)
+            if self._record is not None:
+                self._record.add_event(event)
+            if event["kind"] == "run_end":
+                self._until = int(event["head"])
+        if self._record is None:
+            self._next = self._shared.ring.head
+        else:
+            self._take()
+            self._write(now)
+
+    def end(self) -> None:
+        """Complete the record with all there is."""
+        self.cycle(time.monotonic())
+        self._finish()
+
+    def _begin(self, event: dict[str, Any]) -> None:
+        self._finish()
+        name = str(event["run_id"])
+        try:
+            self._runs.mkdir(parents=True, exist_ok=True)
+            run = {key: event[key] for key in ("run_id", "who", "plan")}
+            self._record = RunRecord(self._runs / f"{name}.mcap", run, event["wall_ns"], event["time_ns"])
+        except OSError as cause:
+            self._complain(f"{name} is not recorded: {cause.strerror}")
+            return
+        before = round(1e9 / int(self._header["period_ns"][0]))
+        self._next = max(0, int(event["head"]) - before)
+        self._until = None
+        self._header["recorder_run"] = name.encode()
+        self._header["recorder_error"] = b""
+        self._header["recorder_lost"] = 0
+
+    def _take(self) -> None:
+        assert self._record is not None
+        while True:
+            wanted = _BATCH if self._until is None else min(_BATCH, self._until - self._next)
+            rows, lost = self._shared.ring.since(self._next, wanted)
+            if lost:
+                self._header["recorder_lost"] += lost
+                self._next += lost
+            if not len(rows):
+                break
+            self._record.add_samples(rows)
+            self._next = int(rows["seq"][-1])
+        self._header["recorder_seq"] = self._next
+
+    def _write(self, now: float) -> None:
+        assert self._record is not None
+        if now - self._statistics_at >= _STATISTICS_S:
+            self._statistics_at = now
+            header = self._header
+            statistics = {
+                "ticks": int(header["ticks"][0]),
+                "deadline_misses": int(header["misses"][0]),
+                "busy_us": int(header["busy_ns"][0]) / 1e3,
+                "lateness_us": self._shared.lateness_us(),
+                "free_bytes": int(header["recorder_free_bytes"][0]),
+            }
+            self._record.add_statistics(time.monotonic_ns(), statistics)
+        ended = self._until is not None and self._next >= self._until
+        if ended or now - self._cut_at >= CHUNK_S:
+            self._cut_at = now
+            try:
+                self._record.cut()
+                self._header["recorder_error"] = b""
+            except OSError as cause:
+                self._complain(f"the record waits: {cause.strerror}")
+            except BufferError as cause:
+                self._complain(f"the record ends early, readable as far as it is: {cause}")
+                self._record.file.close()
+                self._record = None
+                return
+            self._header["recorder_bytes"] = self._record.file.length
+            self._header["recorder_chunks"] = self._record.chunks
+        if ended:
+            self._finish()
+
+    def _finish(self) -> None:
+        if self._record is None:
+            return
+        record, self._record = self._record, None
+        try:
+            record.finish()
+        except OSError as cause:
+            self._complain(f"the record has no index: {cause.strerror}")
+        self._header["recorder_bytes"] = record.file.length
+        self._header["recorder_run"] = b""
+
+    def _complain(self, text: str) -> None:
+        self._header["recorder_error"] = text.encode()[:191]
+
+
+def main() -> None:
+    """Record until the parent process ends."""
+    arguments = argparse.ArgumentParser(description="Records the runs of one rig.")
+    arguments.add_argument("--memory", type=Path, required=True)
+    arguments.add_argument("--runs", type=Path, required=True)
+    arguments.add_argument("--parent", type=int, required=True)
+    given = arguments.parse_args()
+    os.nice(5)
+    shared = Shared(given.memory)
+    shared.header["recorder_pid"] = os.getpid()
+    recorder = Recorder(shared, given.runs)
+    while os.getppid() == given.parent:
+        recorder.cycle(time.monotonic())
+        time.sleep(CYCLE_S)
+    recorder.end()
+
+
+if __name__ == "__main__":
+    main()
