@@ -1,0 +1,39 @@
+"""Runs every method once on every rig it applies to, so that Numba's compiled kernels are in the image's cache."""
+
+import sys
+import time
+from importlib.resources import as_file, files
+
+import numpy as np
+
+from solver.attitude import dcm_from_quaternion, quaternion_from_ned
+from solver.errors import MethodError
+from solver.methods import METHODS
+from solver.resample import resample
+from solver.rig import builtin_rigs
+from solver.solve import solve
+from solver.verify import verify
+
+
+def main() -> None:
+    """One second of the demo flight through everything; one line a method."""
+    with as_file(files("server") / "demo_flights" / "loop.csv") as path:
+        rows = np.loadtxt(path, delimiter=",", skiprows=1, max_rows=201)
+    flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:]), 1000.0)
+    attitude = dcm_from_quaternion(flight.q)
+    for method in METHODS:
+        started, flown = time.perf_counter(), []
+        for name, rig in builtin_rigs().items():
+            try:
+                solution = solve(flight.time, attitude, rig, method)
+            except MethodError:
+                continue  # a method for the other kind of rig
+            verify(flight.time, solution.angles, rig, attitude)
+            flown.append(name)
+        if not flown:
+            sys.exit(f"{method}: no rig flies it")
+        print(f"{method}: {', '.join(flown)} in {time.perf_counter() - started:.1f} s", flush=True)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

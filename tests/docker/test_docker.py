@@ -1,0 +1,188 @@
+"""The container's files against the repository: no engine is needed to see that what they name exists."""
+
+import fnmatch
+import json
+import re
+import runpy
+import shlex
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from server.settings import Settings, is_loopback
+from solver.methods import METHODS
+
+ROOT = Path(__file__).parents[2]
+DOCKER = ROOT / "docker"
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+FIELDS = {f"FULLPOSE_{name.upper()}" for name in Settings.model_fields}
+
+
+def instructions() -> list[tuple[str, str]]:
+    """(instruction, arguments) of the Dockerfile, lines joined."""
+    text = re.sub(r"\\\n", " ", (DOCKER / "Dockerfile").read_text())
+    lines = [line.strip() for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    return [(line.split(None, 1)[0], line.split(None, 1)[1]) for line in lines]
+
+
+def arguments(name: str) -> list[str]:
+    return [text for instruction, text in instructions() if instruction == name]
+
+
+def compose() -> dict[str, Any]:
+    loaded: dict[str, Any] = yaml.safe_load((DOCKER / "compose.yaml").read_text())
+    return loaded
+
+
+def default(text: str) -> str:
+    """A compose value with nothing set in the environment."""
+    return re.sub(r"\$\{\w+:-(.*?)\}", r"\1", text)
+
+
+def environment() -> dict[str, str]:
+    """What the Dockerfile sets."""
+    return dict(pair.split("=", 1) for text in arguments("ENV") for pair in shlex.split(text))
+
+
+def ignored(path: str) -> bool:
+    """Whether .dockerignore keeps the path out of the build; the last pattern that fits decides."""
+    out = False
+    for line in (ROOT / ".dockerignore").read_text().split():
+        pattern = line.removeprefix("!").rstrip("/")
+        parents = [path, *(str(parent) for parent in Path(path).parents if str(parent) != ".")]
+        if any(fnmatch.fnmatch(p, pattern) or fnmatch.fnmatch(f"/{p}", pattern.replace("**", "*")) for p in parents):
+            out = not line.startswith("!")
+    return out
+
+
+def test_everything_copied_exists_and_reaches_the_build() -> None:
+    copied = []
+    for text in arguments("COPY"):
+        words = [word for word in shlex.split(text) if not word.startswith("--")]
+        if "--from=builder" not in text:
+            copied += words[:-1]
+    assert {"pyproject.toml", "server/", "solver/", "web/", "docker/warm.py"} <= set(copied)
+    for path in copied:
+        assert (ROOT / path).exists(), path
+        assert not ignored(path.rstrip("/")), f"{path} is kept out by .dockerignore"
+
+
+def test_the_wheels_own_files_are_copied() -> None:
+    """What pyproject.toml points the build at is in the build stage."""
+    copied = " ".join(arguments("COPY"))
+    build = PROJECT["tool"]["hatch"]["build"]
+    for path in (
+        PROJECT["project"]["readme"],
+        *PROJECT["project"]["license-files"],
+        *build["targets"]["wheel"]["packages"],
+        build["hooks"]["custom"]["path"],
+    ):
+        assert path in copied, path
+
+
+@pytest.mark.parametrize(
+    ("path", "out"),
+    [
+        ("server/app.py", False),
+        ("server/demo_flights/loop.csv", False),
+        ("web/src/main.ts", False),
+        ("web/node_modules/vite/package.json", True),
+        ("server/console/index.html", True),
+        ("server/__pycache__/app.cpython-311.pyc", True),
+        (".git/config", True),
+        (".venv/bin/python", True),
+        ("tests/docker/test_docker.py", True),
+    ],
+)
+def test_build_context(path: str, out: bool) -> None:
+    assert ignored(path) is out
+
+
+def test_base_image_is_an_argument_of_both_stages() -> None:
+    assert instructions()[0][0] == "ARG"
+    assert instructions()[0][1].startswith("BASE_IMAGE=python:3.")
+    assert [text.split()[0] for text in arguments("FROM")] == ["${BASE_IMAGE}"] * 2
+    minimum = tuple(map(int, PROJECT["project"]["requires-python"].removeprefix(">=").split(".")))
+    image = re.search(r"python:(\d+)\.(\d+)", instructions()[0][1])
+    assert image is not None
+    assert (int(image[1]), int(image[2])) >= minimum
+
+
+def test_runs_the_command_that_is_installed_as_a_user_without_rights() -> None:
+    entry = json.loads(arguments("ENTRYPOINT")[0])
+    assert entry[0] in PROJECT["project"]["scripts"]
+    assert json.loads(arguments("CMD")[-1]) == ["serve"]
+    order = [name for name, _ in instructions()]
+    assert order.index("USER") < order.index("ENTRYPOINT")
+    assert arguments("USER") == ["fullpose"]
+    assert "useradd --system --uid 10001" in " ".join(arguments("RUN"))
+
+
+def test_environment_is_what_the_settings_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    service = {key: default(value) for key, value in compose()["services"]["fullpose"]["environment"].items()}
+    both = environment() | service
+    ours = {key for key in both if key.startswith("FULLPOSE_")}
+    assert ours <= FIELDS
+    for key in ours:
+        monkeypatch.setenv(key, both[key])
+    settings = Settings()
+    assert not settings.loopback
+    assert settings.allow_unauthenticated_network
+    assert settings.allowed_hosts == ("fullpose",)
+    assert str(settings.data_dir) in arguments("VOLUME")
+    assert str(settings.port) in arguments("EXPOSE")
+
+
+def test_health_check_asks_a_route_that_exists() -> None:
+    check = next(text for text in arguments("HEALTHCHECK"))
+    command = json.loads(check[check.index("[") :])
+    compile(command[2], "HEALTHCHECK", "exec")
+    route = re.search(r"}(/api/v1/\w+)'", command[2])
+    assert route is not None
+    assert route[1] in json.loads((ROOT / "docs" / "openapi.json").read_text())["paths"]
+
+
+def test_compose_publishes_to_this_machine_only() -> None:
+    services = compose()["services"]
+    for name, service in services.items():
+        for port in service["ports"]:
+            address = default(port).split(":")[0]
+            assert is_loopback(address), f"{name} publishes {port}"
+    published = default(services["fullpose"]["ports"][0]).split(":")
+    assert published[2] == environment()["FULLPOSE_PORT"]
+
+
+def test_compose_builds_the_dockerfile_and_keeps_the_data() -> None:
+    loaded = compose()
+    service = loaded["services"]["fullpose"]
+    context = DOCKER / service["build"]["context"]
+    assert (context / service["build"]["dockerfile"]).resolve() == DOCKER / "Dockerfile"
+    name, mount = service["volumes"][0].split(":")
+    assert name in loaded["volumes"]
+    assert mount in arguments("VOLUME")
+    assert service["cap_add"] == ["SYS_NICE"]
+    assert service["ulimits"]["rtprio"] > 0
+    assert service["ulimits"]["memlock"] == -1
+
+
+def test_caddy_reaches_the_service_and_asks_for_a_password() -> None:
+    caddyfile = (DOCKER / "Caddyfile").read_text()
+    loaded = compose()["services"]
+    upstream = re.search(r"reverse_proxy (\w+):(\d+)", caddyfile)
+    assert upstream is not None
+    assert upstream[1] in loaded
+    assert upstream[2] == environment()["FULLPOSE_PORT"]
+    assert "basic_auth" in caddyfile
+    assert set(re.findall(r"{\$(\w+)}", caddyfile)) <= set(loaded["caddy"]["environment"])
+    assert loaded["caddy"]["profiles"] == ["network"]
+    assert "./Caddyfile:/etc/caddy/Caddyfile:ro" in loaded["caddy"]["volumes"]
+
+
+@pytest.mark.slow
+def test_warming_runs_every_method(capsys: pytest.CaptureFixture[str]) -> None:
+    runpy.run_path(str(DOCKER / "warm.py"), run_name="__main__")
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split(":")[0] for line in lines] == list(METHODS)
