@@ -31,6 +31,7 @@ CODES_PER_FRAME = limited_code(1, 0) - limited_code(0, 0)
 # Rounding must not turn a rate on its limit into one above it; the braking distance is reckoned with a little less
 # than the deceleration there is, so that rounding cannot empty the box either.
 INSIDE = 1.0 - 1e-9
+STOP_MARGIN = 1e-10  # [rad] from the end stops, more than a sample's tolerance
 BRAKING = 0.999
 
 
@@ -73,8 +74,8 @@ def limit_box(
         top_code = code
         bottom_code = code
         if table[MAX, i] < np.inf:
-            top = approach_rate(table[MAX, i] - d[i], deceleration, h)
-            bottom = -approach_rate(d[i] - table[MIN, i], deceleration, h)
+            top = approach_rate(table[MAX, i] - STOP_MARGIN - d[i], deceleration, h)
+            bottom = -approach_rate(d[i] - table[MIN, i] - STOP_MARGIN, deceleration, h)
         limit = INSIDE * table[RATE, i]
         code = CODES_PER_FRAME * i + RATE_CODE
         if limit < top:
@@ -92,8 +93,8 @@ def limit_box(
             if v[i] - change > bottom:
                 bottom = v[i] - change
                 bottom_code = code
-        lo[i] = d[i] + bottom * h
-        hi[i] = d[i] + top * h
+        lo[i] = max(d[i] + bottom * h, table[MIN, i])
+        hi[i] = min(d[i] + top * h, table[MAX, i])
         if lo[i] > hi[i]:
             # Only by rounding: a frame that stands on its stop, or has no range.
             lo[i] = hi[i] = min(max(0.5 * (lo[i] + hi[i]), table[MIN, i]), table[MAX, i])
