@@ -28,7 +28,7 @@ from solver.tracking import CLOCK, CODE, FRESH, HI, LO, PHASE, ROWS, advance, go
 Array = NDArray[np.float64]
 
 HELD = 1e-9  # [rad] a sample within this of the attitude is not limited
-LOCKED_DAMPING = 1e-12  # relative: with two frames or fewer left, the step is the least-squares one
+LOCKED_DAMPING = 1e-12  # shares the step between two free frames with parallel axes
 
 
 @dataclass(frozen=True)
@@ -51,26 +51,48 @@ class ClampedOptions:
 
 @kernel
 def free_step(J: Array, weight: Array, free: NDArray[np.bool_], e: Array, damping: float, A: Array, p: Array) -> None:
-    """p <- W^-1 J^T (J W^-1 J^T + damping I)^-1 e over the free frames; the entries of the locked ones are left.
+    """p <- the free frames' least-norm step for e; with two or fewer free, their least-squares one.
 
-    J (3, 4); weight, free, p (4,); e (3,); A (3, 4) is room to work in.
+    The entries of the locked frames are left. J (3, 4); weight, free, p (4,); e (3,); A (3, 4) is room to work in.
     """
     y = A[:, 3]
-    for r in range(3):
-        y[r] = e[r]
-        for c in range(r + 1):
-            A[r, c] = damping if r == c else 0.0
-            for i in range(4):
-                if free[i]:
-                    A[r, c] += J[r, i] * J[c, i] / weight[i]
-    if not solve_symmetric(A, y, 3):
-        for i in range(4):
-            if free[i]:
-                p[i] = 0.0
-        return
+    count = 0
     for i in range(4):
         if free[i]:
-            p[i] = (J[0, i] * y[0] + J[1, i] * y[1] + J[2, i] * y[2]) / weight[i]
+            count += 1
+    if count > 2:
+        # W^-1 J^T (J W^-1 J^T + damping I)^-1 e
+        for r in range(3):
+            y[r] = e[r]
+            for c in range(r + 1):
+                A[r, c] = damping if r == c else 0.0
+                for i in range(4):
+                    if free[i]:
+                        A[r, c] += J[r, i] * J[c, i] / weight[i]
+        solved = solve_symmetric(A, y, 3)
+        for i in range(4):
+            if free[i]:
+                p[i] = (J[0, i] * y[0] + J[1, i] * y[1] + J[2, i] * y[2]) / weight[i] if solved else 0.0
+        return
+    # (J^T J + damping W)^-1 J^T e over the free columns: the other form has no inverse with fewer columns than rows.
+    m = 0
+    for i in range(4):
+        if not free[i]:
+            continue
+        y[m] = J[0, i] * e[0] + J[1, i] * e[1] + J[2, i] * e[2]
+        k = 0
+        for j in range(i + 1):
+            if free[j]:
+                A[m, k] = J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j]
+                k += 1
+        A[m, m] += LOCKED_DAMPING * weight[i]
+        m += 1
+    solved = solve_symmetric(A, y, m)
+    m = 0
+    for i in range(4):
+        if free[i]:
+            p[i] = y[m] if solved else 0.0
+            m += 1
 
 
 @kernel
@@ -93,7 +115,7 @@ def clamped_step(
             for i in range(4):
                 if not free[i]:
                     r[k] -= J[k, i] * p[i]
-        free_step(J, weight, free, r, damping if locked < 2 else damping + LOCKED_DAMPING, A, p)
+        free_step(J, weight, free, r, damping, A, p)
         worst = 0.0
         out = -1
         for i in range(4):
