@@ -167,7 +167,7 @@ class RigScene:
         )
         for part in machine.static:
             self._solid(f"/static/{part.name}", part)
-        centre = 0.5 * (machine.floor + reach)
+        centre = 0.56 * machine.floor + 0.44 * reach
         camera = self._server.initial_camera
         camera.look_at = np.array([0.0, centre, 0.0])
         camera.up = np.array([0.0, 1.0, 0.0])

@@ -8,6 +8,11 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from solver.attitude import dcm_from_quaternion, quaternion_from_ned
+from solver.resample import resample
+from solver.rig import builtin_rigs
+from solver.solve import solve
+from solver.verify import verify
 from tools.fly_flights import FLIGHTS, RATE_HZ, fly, table
 
 # JSBSim hands its matrices over as numpy.matrix, which NumPy frowns on.
@@ -90,6 +95,22 @@ def test_flown_again_writes_the_same_bytes(name: str) -> None:
     np.testing.assert_allclose(
         np.loadtxt(again[1:], delimiter=","), np.loadtxt(committed[1:], delimiter=","), rtol=0.0, atol=1e-6
     )
+
+
+def test_demo_flight_is_flown_exactly_on_the_demo_rig() -> None:
+    """`fullpose demo` flies it on vertical-4 at 1 kHz: exact at every sample and inside every limit."""
+    rows = np.loadtxt(FOLDER / "loop.csv", delimiter=",", skiprows=1)
+    flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:]), 1000.0)
+    attitude = dcm_from_quaternion(flight.q)
+    rig = builtin_rigs()["vertical-4"]
+    solution = solve(flight.time, attitude, rig, method="exact")
+    check = verify(flight.time, solution.angles, rig, attitude)
+    assert check.max_matrix_error < 1e-14
+    assert solution.limited_samples == 0
+    assert not check.violations
+    # Not at the limits' edge either: an operator's first flight should look calm.
+    assert (check.peaks[:, 1] < 0.5 * rig.max_rate).all()
+    assert (check.peaks[:, 2] < 0.5 * rig.max_acceleration).all()
 
 
 def test_demo_flight_is_the_example_loop() -> None:

@@ -1,0 +1,44 @@
+"""Every script in examples/ runs, and says what its first lines promise."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SAID = {
+    "solve_flight.py": ["loop on vertical-4", "loop on horizontal-4", "flown exactly, inside every limit"],
+    "fourth_axis.py": ["vertical-3: fastest frame 2", "vertical-4: fastest frame"],
+}
+
+
+def run(script: str, *arguments: str) -> str:
+    """The script's output, run as a person would from the repository's root."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", f"examples/{script}", *arguments],
+        cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_every_script_is_known_here() -> None:
+    assert {path.name for path in (ROOT / "examples").glob("*.py")} == set(SAID)
+
+
+@pytest.mark.parametrize("script", SAID)
+def test_script_runs(script: str) -> None:
+    output = run(script)
+    for expected in SAID[script]:
+        assert expected in output
+
+
+def test_another_flight_can_be_given() -> None:
+    assert "split_s on vertical-4: 27531 samples" in run("solve_flight.py", "examples/flights/split_s.csv")
