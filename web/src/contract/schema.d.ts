@@ -1,0 +1,3198 @@
+// Generated from docs/openapi.json by `npm run generate`. Do not edit.
+
+export interface paths {
+    "/api/v1/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Audit
+         * @description Every command, accepted or refused, newest first.
+         */
+        get: operations["list_audit_api_v1_audit_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/health": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Health
+         * @description How the server, its planner and its rigs do. Always 200: `status` and `warnings` say what is wrong.
+         */
+        get: operations["health_api_v1_health_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/methods": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Methods
+         * @description The methods that plans, solves and comparisons may name.
+         */
+        get: operations["list_methods_api_v1_methods_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/metrics": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Metrics
+         * @description Prometheus text.
+         */
+        get: operations["metrics_api_v1_metrics_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/plans": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Plans
+         * @description All plans, newest first.
+         */
+        get: operations["list_plans_api_v1_plans_get"];
+        put?: never;
+        /**
+         * Add Plan
+         * @description Ask for a plan; poll it until its status is done, failed or cancelled.
+         */
+        post: operations["add_plan_api_v1_plans_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/plans/{plan}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Plan
+         * @description One plan and how far it is.
+         */
+        get: operations["get_plan_api_v1_plans__plan__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Remove Plan
+         * @description Cancel a plan that is being made (it stays, cancelled); remove one that is not.
+         */
+        delete: operations["remove_plan_api_v1_plans__plan__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/plans/{plan}/samples": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Plan Samples
+         * @description Angles, rates, accelerations and error of a plan, thinned to about `points` samples, for plots.
+         */
+        get: operations["plan_samples_api_v1_plans__plan__samples_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/rigs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Rigs
+         * @description All rigs, the built-in ones first.
+         */
+        get: operations["list_rigs_api_v1_rigs_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/rigs/{rig}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Rig
+         * @description One rig.
+         */
+        get: operations["get_rig_api_v1_rigs__rig__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/rigs/{rig}/alarms": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Alarms
+         * @description The rig's alarms, standing and past, the newest last.
+         */
+        get: operations["get_alarms_api_v1_rigs__rig__alarms_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/rigs/{rig}/commands": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Command
+         * @description Command the session. Needs the lease, but for stop and estop.
+         */
+        post: operations["command_api_v1_rigs__rig__commands_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/rigs/{rig}/estop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Estop
+         * @description Brake as fast as the limits allow, then disable the drive. Needs no lease and waits for no other command.
+         */
+        post: operations["estop_api_v1_rigs__rig__estop_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/rigs/{rig}/lease": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Lease
+         * @description Take, request, grant or renew the lease.
+         */
+        post: operations["lease_api_v1_rigs__rig__lease_post"];
+        /**
+         * Release Lease
+         * @description Give the lease up.
+         */
+        delete: operations["release_lease_api_v1_rigs__rig__lease_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/rigs/{rig}/session": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Session
+         * @description The session as of now.
+         */
+        get: operations["get_session_api_v1_rigs__rig__session_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/rigs/{rig}/stop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Stop
+         * @description Brake every frame inside its limits. Needs no lease and waits for no other command.
+         */
+        post: operations["stop_api_v1_rigs__rig__stop_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Runs
+         * @description All runs, newest first.
+         */
+        get: operations["list_runs_api_v1_runs_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run
+         * @description One run.
+         */
+        get: operations["get_run_api_v1_runs__run__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run}/export": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Export Run
+         * @description The whole run as a file.
+         */
+        get: operations["export_run_api_v1_runs__run__export_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/solve": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Solve Batch
+         * @description A batch of attitudes in, frame angles and errors out; no session needed.
+         */
+        post: operations["solve_batch_api_v1_solve_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/trajectories": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Trajectories
+         * @description All flights, newest first.
+         */
+        get: operations["list_trajectories_api_v1_trajectories_get"];
+        put?: never;
+        /**
+         * Add Trajectory
+         * @description Upload a flight. Refused as a whole where anything in it is wrong; the problem names line and column.
+         */
+        post: operations["add_trajectory_api_v1_trajectories_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/trajectories/{sha256}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Trajectory
+         * @description One flight.
+         */
+        get: operations["get_trajectory_api_v1_trajectories__sha256__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Remove Trajectory
+         * @description Remove a flight that no plan needs.
+         */
+        delete: operations["remove_trajectory_api_v1_trajectories__sha256__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/trajectories/{sha256}/preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Preview Trajectory
+         * @description The flight thinned to about `points` samples, for plots.
+         */
+        get: operations["preview_trajectory_api_v1_trajectories__sha256__preview_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+}
+export type webhooks = Record<string, never>;
+export interface components {
+    schemas: {
+        /** Acknowledge */
+        Acknowledge: {
+            /** @default {} */
+            args: components["schemas"]["AcknowledgeArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "acknowledge";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** AcknowledgeArgs */
+        AcknowledgeArgs: {
+            /**
+             * Alarms
+             * @description Numbers; null: all that stand
+             */
+            alarms?: number[] | null;
+        };
+        /**
+         * AlarmOut
+         * @description A fault or warning, with its evidence; `value` and `limit` are in `unit`. `first` of a chain is its cause.
+         */
+        AlarmOut: {
+            /** Acknowledged By */
+            acknowledged_by?: string | null;
+            /** Code */
+            code: string;
+            /**
+             * Count
+             * @default 1
+             */
+            count: number;
+            /**
+             * First
+             * @default false
+             */
+            first: boolean;
+            /** Frame */
+            frame?: ("base" | "outer" | "middle" | "inner") | null;
+            /** Limit */
+            limit?: number | null;
+            /** Message */
+            message: string;
+            /** Number */
+            number: number;
+            /**
+             * Severity
+             * @enum {string}
+             */
+            severity: "warning" | "fault" | "emergency";
+            /**
+             * Time S
+             * @description Seconds since 1970, of the first occurrence
+             */
+            time_s: number;
+            /** Unit */
+            unit?: string | null;
+            /** Value */
+            value?: number | null;
+        };
+        /** Arm */
+        Arm: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "arm";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * AuditOut
+         * @description One command, accepted or refused.
+         */
+        AuditOut: {
+            /** Accepted */
+            accepted: boolean;
+            /** Args */
+            args: {
+                [key: string]: unknown;
+            };
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /** Command */
+            command: string;
+            /** Detail */
+            detail: string | null;
+            /** Id */
+            id: number;
+            /** Lease Epoch */
+            lease_epoch: number | null;
+            /** Lease Sequence */
+            lease_sequence: number | null;
+            /** Rig */
+            rig: string;
+            /**
+             * State After
+             * @enum {string}
+             */
+            state_after: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            /**
+             * State Before
+             * @enum {string}
+             */
+            state_before: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            /** Who */
+            who: string;
+        };
+        /** BlockingOut */
+        BlockingOut: {
+            /**
+             * Frame
+             * @enum {string}
+             */
+            frame: "base" | "outer" | "middle" | "inner";
+            /**
+             * Limit
+             * @enum {string}
+             */
+            limit: "position" | "rate" | "acceleration";
+            /** Time S */
+            time_s: number;
+        };
+        /**
+         * CommandOut
+         * @description A command that was accepted: what the session was and is.
+         */
+        CommandOut: {
+            /** Command */
+            command: string;
+            /** Revision */
+            revision: number;
+            /**
+             * State After
+             * @enum {string}
+             */
+            state_after: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            /**
+             * State Before
+             * @enum {string}
+             */
+            state_before: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+        };
+        /** Connect */
+        Connect: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "connect";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** Disarm */
+        Disarm: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "disarm";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** Estop */
+        Estop: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "estop";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * FieldProblem
+         * @description One thing wrong with a request: where, which value, what was expected.
+         */
+        FieldProblem: {
+            /** Expected */
+            expected?: string | null;
+            /**
+             * Line
+             * @description Line of the file, the first is 1
+             */
+            line?: number | null;
+            /** Message */
+            message: string;
+            /** Value */
+            value?: string | null;
+            /**
+             * Where
+             * @description Path in the body, query or header, or the column of a file
+             */
+            where: string;
+        };
+        /**
+         * FrameOut
+         * @description One frame's limits; null means no limit. Both positions null: the frame turns without end.
+         */
+        FrameOut: {
+            /** Home Deg */
+            home_deg: number;
+            /** Max Acceleration Deg S2 */
+            max_acceleration_deg_s2: number | null;
+            /** Max Deg */
+            max_deg: number | null;
+            /** Max Rate Deg S */
+            max_rate_deg_s: number | null;
+            /** Min Deg */
+            min_deg: number | null;
+            /** Weight */
+            weight: number;
+        };
+        /**
+         * FramesOut
+         * @description The frames from the outside in; a three-axis rig has no base.
+         */
+        FramesOut: {
+            base: components["schemas"]["FrameOut"] | null;
+            inner: components["schemas"]["FrameOut"];
+            middle: components["schemas"]["FrameOut"];
+            outer: components["schemas"]["FrameOut"];
+        };
+        /** GoLive */
+        GoLive: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "go_live";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * HealthOut
+         * @description `status` is degraded where a rig process, a recorder or the planner does not answer.
+         */
+        HealthOut: {
+            /**
+             * Authenticated
+             * @description False: no users are configured, anyone who reaches the port may command
+             */
+            authenticated: boolean;
+            limits: components["schemas"]["ServerLimits"];
+            /**
+             * Planner
+             * @enum {string}
+             */
+            planner: "idle" | "busy" | "starting" | "stopped";
+            /** Rigs */
+            rigs: {
+                [key: string]: components["schemas"]["RigHealth"];
+            };
+            /** Server Time */
+            server_time: number;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "ok" | "degraded";
+            /** Uptime S */
+            uptime_s: number;
+            /** Version */
+            version: string;
+            /** Warnings */
+            warnings: string[];
+        };
+        /**
+         * Hello
+         * @description First message of the server.
+         */
+        Hello: {
+            /** Fields */
+            fields: string[];
+            record: components["schemas"]["Record"];
+            /** Rig */
+            rig: string;
+            /**
+             * Schema
+             * @default fullpose.stream/1
+             * @constant
+             */
+            schema: "fullpose.stream/1";
+            /** Server Time */
+            server_time: number;
+            session: components["schemas"]["SessionOut"];
+            /**
+             * Type
+             * @default hello
+             * @constant
+             */
+            type: "hello";
+        };
+        /** Hold */
+        Hold: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "hold";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** Home */
+        Home: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "home";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** IterationsOut */
+        IterationsOut: {
+            /** Max */
+            max: number;
+            /** Median */
+            median: number;
+        };
+        /**
+         * JobErrorOut
+         * @description Why a job failed.
+         */
+        JobErrorOut: {
+            /** Code */
+            code: string;
+            /**
+             * Errors
+             * @default []
+             */
+            errors: components["schemas"]["FieldProblem"][];
+            /** Message */
+            message: string;
+        };
+        /** Jog */
+        Jog: {
+            args: components["schemas"]["JogArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "jog";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** JogArgs */
+        JogArgs: {
+            /**
+             * Frame
+             * @enum {string}
+             */
+            frame: "base" | "outer" | "middle" | "inner";
+            /**
+             * Rate Deg S
+             * @description Zero stops the jog
+             */
+            rate_deg_s: number;
+        };
+        /**
+         * LeaseIn
+         * @description take: when free or silent; takeover: by force, audited; request: ask the holder; grant: hand over; renew.
+         */
+        LeaseIn: {
+            /**
+             * Action
+             * @default take
+             * @enum {string}
+             */
+            action: "take" | "takeover" | "request" | "grant" | "renew";
+            /**
+             * To
+             * @description With grant: who of those who asked; null: the first
+             */
+            to?: string | null;
+        };
+        /**
+         * LeaseOut
+         * @description Who may command. `epoch` grows with every new holder; each command's sequence must be above `sequence`.
+         */
+        LeaseOut: {
+            /** Epoch */
+            epoch: number;
+            /**
+             * Expires S
+             * @description Until the holder counts as silent: the rig holds, stops, disarms
+             */
+            expires_s: number | null;
+            /** Holder */
+            holder: string | null;
+            /** Requested By */
+            requested_by: string[];
+            /** Sequence */
+            sequence: number;
+        };
+        /**
+         * LeaseToken
+         * @description Proof of holding the lease: its epoch, and a sequence that grows with every command.
+         */
+        LeaseToken: {
+            /** Epoch */
+            epoch: number;
+            /** Sequence */
+            sequence: number;
+        };
+        /**
+         * Limited
+         * @description A sample whose attitude a limit did not allow.
+         */
+        Limited: {
+            /**
+             * Frame
+             * @enum {string}
+             */
+            frame: "base" | "outer" | "middle" | "inner";
+            /**
+             * Limit
+             * @enum {string}
+             */
+            limit: "position" | "rate" | "acceleration";
+            /** Sample */
+            sample: number;
+        };
+        /** Load */
+        Load: {
+            args: components["schemas"]["LoadArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "load";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** LoadArgs */
+        LoadArgs: {
+            /**
+             * Plan
+             * @description Id of a flyable plan of this rig
+             */
+            plan: string;
+        };
+        /**
+         * MethodOut
+         * @description A method the server can solve with.
+         */
+        MethodOut: {
+            /** Claims Limits */
+            claims_limits: boolean;
+            /** Name */
+            name: string;
+            /**
+             * Options
+             * @description Names and defaults
+             */
+            options: {
+                [key: string]: boolean | number | string;
+            };
+            /** Source */
+            source: string;
+        };
+        /** Move */
+        Move: {
+            args: components["schemas"]["MoveArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "move";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** MoveArgs */
+        MoveArgs: {
+            /** Target Deg */
+            target_deg: [
+                number,
+                number,
+                number,
+                number
+            ];
+        };
+        /**
+         * NoArgs
+         * @description A command without arguments.
+         */
+        NoArgs: Record<string, never>;
+        /**
+         * Notice
+         * @description Something accepted that a person should look at.
+         */
+        Notice: {
+            /** Code */
+            code: string;
+            /** Message */
+            message: string;
+        };
+        /** Opened */
+        Opened: {
+            /** Method */
+            method: string;
+            /** Rig */
+            rig: string;
+            /**
+             * Type
+             * @default opened
+             * @constant
+             */
+            type: "opened";
+        };
+        /**
+         * OpenSolve
+         * @description First message of the client.
+         */
+        OpenSolve: {
+            /**
+             * Method
+             * @default exact
+             */
+            method: string;
+            /**
+             * Options
+             * @default {}
+             */
+            options: {
+                [key: string]: boolean | number | string;
+            };
+            /** Rig */
+            rig: string;
+            /**
+             * Start Deg
+             * @default null
+             */
+            start_deg: [
+                number,
+                number,
+                number,
+                number
+            ] | null;
+            /**
+             * Type
+             * @constant
+             */
+            type: "open";
+        };
+        /**
+         * PayloadOut
+         * @description What the rig carries, for the scene: a box or a mesh file.
+         */
+        PayloadOut: {
+            /** Mesh */
+            mesh?: string | null;
+            /** Size M */
+            size_m?: [
+                number,
+                number,
+                number
+            ] | null;
+        };
+        /** PeakOut */
+        PeakOut: {
+            /** Acceleration Deg S2 */
+            acceleration_deg_s2: number;
+            /** Position Deg */
+            position_deg: number;
+            /** Rate Deg S */
+            rate_deg_s: number;
+        };
+        /** PeaksOut */
+        PeaksOut: {
+            base?: components["schemas"]["PeakOut"] | null;
+            inner: components["schemas"]["PeakOut"];
+            middle: components["schemas"]["PeakOut"];
+            outer: components["schemas"]["PeakOut"];
+        };
+        /** Ping */
+        Ping: {
+            /** T */
+            t: number;
+            /**
+             * Type
+             * @constant
+             */
+            type: "ping";
+        };
+        /**
+         * PlanIn
+         * @description What to plan. Without `start_deg` the start pose is free.
+         */
+        PlanIn: {
+            /**
+             * Method
+             * @default plan
+             */
+            method: string;
+            /**
+             * Options
+             * @default {}
+             */
+            options: {
+                [key: string]: boolean | number | string;
+            };
+            /** Rig */
+            rig: string;
+            /** Start Deg */
+            start_deg?: [
+                number,
+                number,
+                number,
+                number
+            ] | null;
+            /** Trajectory */
+            trajectory: string;
+        };
+        /**
+         * PlanOut
+         * @description A plan and its job. `flyable` plans can be loaded; the others say why not in `refusal`.
+         */
+        PlanOut: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Duration S */
+            duration_s: number | null;
+            error: components["schemas"]["JobErrorOut"] | null;
+            /** Feasible */
+            feasible: boolean | null;
+            /** Finished At */
+            finished_at: string | null;
+            /** Flyable */
+            flyable: boolean;
+            /** Id */
+            id: string;
+            /** Lead In S */
+            lead_in_s: number | null;
+            /** Lead Out S */
+            lead_out_s: number | null;
+            /** Method */
+            method: string;
+            /** Options */
+            options: {
+                [key: string]: boolean | number | string;
+            };
+            /** Plan Hash */
+            plan_hash: string | null;
+            progress: components["schemas"]["ProgressOut"];
+            /** Rate Hz */
+            rate_hz: number | null;
+            /** Refusal */
+            refusal: string | null;
+            report: components["schemas"]["ReportOut"] | null;
+            /**
+             * Resampling
+             * @description How the flight was brought to the rig's rate
+             */
+            resampling: string | null;
+            /** Rig */
+            rig: string;
+            /** Rig Hash */
+            rig_hash: string;
+            /** Samples */
+            samples: number | null;
+            /** Start Deg */
+            start_deg: [
+                number,
+                number,
+                number,
+                number
+            ] | null;
+            /** Started At */
+            started_at: string | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "done" | "failed" | "cancelled" | "interrupted";
+            /** Trajectory */
+            trajectory: string;
+            /** Trajectory Name */
+            trajectory_name: string;
+        };
+        /**
+         * PlanRef
+         * @description The plan, or the live source, bound by load.
+         */
+        PlanRef: {
+            /** Duration S */
+            duration_s: number | null;
+            /** Live */
+            live: boolean;
+            /** Name */
+            name: string;
+            /** Plan Hash */
+            plan_hash: string;
+            /** Plan Id */
+            plan_id: string;
+            /** Rig Hash */
+            rig_hash: string;
+        };
+        /**
+         * PlanSamples
+         * @description A thinned plan for plots, lead-in and lead-out included; time zero is the flight's first sample.
+         *
+         *     Error and attitude are null in the leads. Peaks of every column are kept by the thinning.
+         */
+        PlanSamples: {
+            /** Accelerations Deg S2 */
+            accelerations_deg_s2: {
+                [key: string]: number[];
+            };
+            /** Angles Deg */
+            angles_deg: {
+                [key: string]: number[];
+            };
+            /** Error Deg */
+            error_deg: (number | null)[];
+            /** Id */
+            id: string;
+            /** Lead In S */
+            lead_in_s: number;
+            /** Lead Out S */
+            lead_out_s: number;
+            /** Q */
+            q: ([
+                number,
+                number,
+                number,
+                number
+            ] | null)[];
+            /** Rates Deg S */
+            rates_deg_s: {
+                [key: string]: number[];
+            };
+            /** Samples */
+            samples: number;
+            /** Time S */
+            time_s: number[];
+        };
+        /** Pong */
+        Pong: {
+            /** Server Time */
+            server_time: number;
+            /** T */
+            t: number;
+            /**
+             * Type
+             * @default pong
+             * @constant
+             */
+            type: "pong";
+        };
+        /**
+         * Problem
+         * @description Every error answer, as application/problem+json.
+         */
+        Problem: {
+            /**
+             * Allowed
+             * @description Commands the state allows
+             * @default null
+             */
+            allowed: string[] | null;
+            /**
+             * Command
+             * @default null
+             */
+            command: string | null;
+            /** Detail */
+            detail: string;
+            /**
+             * Errors
+             * @default []
+             */
+            errors: components["schemas"]["FieldProblem"][];
+            /**
+             * Instance
+             * @default null
+             */
+            instance: string | null;
+            /**
+             * State
+             * @description Session state, where a command was refused
+             * @default null
+             */
+            state: string | null;
+            /** Status */
+            status: number;
+            /** Title */
+            title: string;
+            /**
+             * Type
+             * @description urn:fullpose:problem:<code>; the code is stable, the texts are not
+             */
+            type: string;
+        };
+        /**
+         * ProgressOut
+         * @description How far a job is.
+         */
+        ProgressOut: {
+            /** Done */
+            done: number;
+            /** Fraction */
+            fraction: number;
+            /** Phase */
+            phase: string;
+            /** Total */
+            total: number;
+        };
+        /**
+         * Record
+         * @description The binary record: its size in bytes and its fields.
+         */
+        Record: {
+            /** Fields */
+            fields: components["schemas"]["RecordField"][];
+            /** Size */
+            size: number;
+        };
+        /**
+         * RecorderOut
+         * @description The recorder process of a rig.
+         */
+        RecorderOut: {
+            /** Alive */
+            alive: boolean;
+            /** Bytes Written */
+            bytes_written: number;
+            /** Error */
+            error: string;
+            /** Free Bytes */
+            free_bytes: number;
+            /**
+             * Lag
+             * @description Samples between the loop and the recorder
+             */
+            lag: number;
+            /**
+             * Lost
+             * @description Samples that never reached the record
+             */
+            lost: number;
+            /**
+             * Run
+             * @description Id of the run being written, or empty
+             */
+            run: string;
+        };
+        /**
+         * RecordField
+         * @description One field of the binary record.
+         */
+        RecordField: {
+            /** Count */
+            count: number;
+            /** Name */
+            name: string;
+            /** Offset */
+            offset: number;
+            /**
+             * Type
+             * @description NumPy type string, little-endian
+             */
+            type: string;
+        };
+        /**
+         * ReportOut
+         * @description The report of `fullpose solve --report`, key by key; keys may be added, not renamed.
+         */
+        ReportOut: {
+            blocking: components["schemas"]["BlockingOut"] | null;
+            /** Feasible */
+            feasible: boolean;
+            iterations: components["schemas"]["IterationsOut"];
+            /**
+             * Limit Violation Samples
+             * @description All of them; the list is cut at a thousand runs
+             */
+            limit_violation_samples: number;
+            /** Limit Violations */
+            limit_violations: components["schemas"]["ViolationOut"][];
+            /**
+             * Limited By
+             * @description frame, limit, samples
+             */
+            limited_by: {
+                [key: string]: string | number;
+            }[];
+            /** Limited Samples */
+            limited_samples: number;
+            /** Max Error Deg */
+            max_error_deg: number;
+            /** Max Matrix Error */
+            max_matrix_error: number;
+            /** Method */
+            method: string;
+            peak: components["schemas"]["PeaksOut"];
+            /** Rig */
+            rig: string;
+            /** Samples */
+            samples: number;
+            /** Solve S */
+            solve_s: number | null;
+            step_us: components["schemas"]["StepTimeOut"] | null;
+            /**
+             * Warnings
+             * @default []
+             */
+            warnings: components["schemas"]["Notice"][];
+        };
+        /** Reset */
+        Reset: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "reset";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** Resume */
+        Resume: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "resume";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * RigHealth
+         * @description How the rig process does; lateness over its whole life, by percentile.
+         */
+        RigHealth: {
+            /** Busy Us */
+            busy_us: number;
+            /** Deadline Misses */
+            deadline_misses: number;
+            /** Heartbeat Age S */
+            heartbeat_age_s: number | null;
+            /** Lateness Us */
+            lateness_us: {
+                [key: string]: number;
+            };
+            /** Rate Hz */
+            rate_hz: number;
+            /**
+             * Realtime
+             * @description Scheduling in words: real-time, or what is missing
+             */
+            realtime: string;
+            recorder: components["schemas"]["RecorderOut"] | null;
+            /** Rig Alive */
+            rig_alive: boolean;
+            /** Rig Pid */
+            rig_pid: number | null;
+            /** Ticks */
+            ticks: number;
+        };
+        /**
+         * RigOut
+         * @description A rig the server knows, and the state of its session.
+         */
+        RigOut: {
+            /** Builtin */
+            builtin: boolean;
+            frames: components["schemas"]["FramesOut"];
+            /**
+             * Geometry
+             * @enum {string}
+             */
+            geometry: "vertical-4" | "horizontal-4" | "vertical-3" | "horizontal-3";
+            /** Name */
+            name: string;
+            payload: components["schemas"]["PayloadOut"];
+            /** Redundant */
+            redundant: boolean;
+            /** Rig Hash */
+            rig_hash: string;
+            /**
+             * State
+             * @description Session state; disconnected where no rig process runs
+             */
+            state: string;
+        };
+        /**
+         * RunOut
+         * @description A recorded run.
+         */
+        RunOut: {
+            /** Bytes */
+            bytes: number;
+            /**
+             * Complete
+             * @description False while it is being written, or where the recorder was cut off
+             */
+            complete: boolean;
+            /** Duration S */
+            duration_s: number | null;
+            /** Ended At */
+            ended_at: string | null;
+            /** Id */
+            id: string;
+            /**
+             * Lost Samples
+             * @description Missing sequence numbers
+             */
+            lost_samples: number | null;
+            /** Max Solve Error Deg */
+            max_solve_error_deg: number | null;
+            /** Max Tracking Error Deg */
+            max_tracking_error_deg: number | null;
+            /** Plan Hash */
+            plan_hash: string | null;
+            /** Plan Id */
+            plan_id: string | null;
+            /** Rig */
+            rig: string;
+            /** Samples */
+            samples: number | null;
+            /** Started At */
+            started_at: string | null;
+        };
+        /** ServerLimits */
+        ServerLimits: {
+            /** Max Solve Samples */
+            max_solve_samples: number;
+            /** Max Upload Bytes */
+            max_upload_bytes: number;
+        };
+        /** SessionChanged */
+        SessionChanged: {
+            /** Revision */
+            revision: number;
+            /** Server Time */
+            server_time: number;
+            session: components["schemas"]["SessionOut"];
+            /**
+             * Type
+             * @default session
+             * @constant
+             */
+            type: "session";
+        };
+        /**
+         * SessionOut
+         * @description All an operator must know: state, what is allowed, who holds the lease, the plan, the alarms, health, pose.
+         */
+        SessionOut: {
+            /**
+             * Alarms
+             * @description Those that stand
+             */
+            alarms: components["schemas"]["AlarmOut"][];
+            /** Allowed */
+            allowed: string[];
+            /** Drive */
+            drive: string | null;
+            health: components["schemas"]["RigHealth"];
+            /** History */
+            history: components["schemas"]["AlarmOut"][];
+            lease: components["schemas"]["LeaseOut"];
+            plan: components["schemas"]["PlanRef"] | null;
+            /** Pose Deg */
+            pose_deg: [
+                number,
+                number,
+                number,
+                number
+            ] | null;
+            /** Revision */
+            revision: number;
+            /** Rig */
+            rig: string;
+            /** Run Id */
+            run_id: string | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+        };
+        /**
+         * Solved
+         * @description Answer to one `samples` message, row by row; `limited.sample` counts within the message.
+         */
+        Solved: {
+            /** Angles Deg */
+            angles_deg: [
+                number,
+                number,
+                number,
+                number
+            ][];
+            /** Error Deg */
+            error_deg: number[];
+            /** Limited */
+            limited: components["schemas"]["Limited"][];
+            /** Time S */
+            time_s: number[];
+            /**
+             * Type
+             * @default solved
+             * @constant
+             */
+            type: "solved";
+        };
+        /** SolveIn */
+        SolveIn: {
+            /** Euler Deg */
+            euler_deg?: [
+                number,
+                number,
+                number
+            ][] | null;
+            /**
+             * Method
+             * @default exact
+             */
+            method: string;
+            /**
+             * Options
+             * @default {}
+             */
+            options: {
+                [key: string]: boolean | number | string;
+            };
+            /** Q */
+            q?: [
+                number,
+                number,
+                number,
+                number
+            ][] | null;
+            /** Rig */
+            rig: string;
+            /** Start Deg */
+            start_deg?: [
+                number,
+                number,
+                number,
+                number
+            ] | null;
+            /** Time S */
+            time_s: number[];
+        };
+        /** SolveOut */
+        SolveOut: {
+            /** Angles Deg */
+            angles_deg: [
+                number,
+                number,
+                number,
+                number
+            ][];
+            /** Error Deg */
+            error_deg: number[];
+            /** Limited */
+            limited: components["schemas"]["Limited"][];
+            report: components["schemas"]["ReportOut"];
+            /** Time S */
+            time_s: number[];
+        };
+        /** SolveProblem */
+        SolveProblem: {
+            problem: components["schemas"]["Problem"];
+            /**
+             * Type
+             * @default problem
+             * @constant
+             */
+            type: "problem";
+        };
+        /**
+         * SolveSamples
+         * @description The next attitudes of the flight; time goes on from message to message.
+         */
+        SolveSamples: {
+            /**
+             * Euler Deg
+             * @default null
+             */
+            euler_deg: [
+                number,
+                number,
+                number
+            ][] | null;
+            /**
+             * Q
+             * @default null
+             */
+            q: [
+                number,
+                number,
+                number,
+                number
+            ][] | null;
+            /** Time S */
+            time_s: number[];
+            /**
+             * Type
+             * @constant
+             */
+            type: "samples";
+        };
+        /** Start */
+        Start: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "start";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** StepTimeOut */
+        StepTimeOut: {
+            /** Median */
+            median: number;
+            /** P99 */
+            p99: number;
+        };
+        /** Stop */
+        Stop: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "stop";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * StreamProblem
+         * @description A message of the client that was not understood; the stream goes on.
+         */
+        StreamProblem: {
+            problem: components["schemas"]["Problem"];
+            /**
+             * Type
+             * @default problem
+             * @constant
+             */
+            type: "problem";
+        };
+        /**
+         * Subscribe
+         * @description What the client wants; sent again, it replaces the earlier one.
+         */
+        Subscribe: {
+            /**
+             * Encoding
+             * @default json
+             * @enum {string}
+             */
+            encoding: "json" | "binary";
+            /**
+             * Every Sample
+             * @description All samples since the last frame, else only the newest
+             * @default false
+             */
+            every_sample: boolean;
+            /**
+             * Rate Hz
+             * @description Frames a second, not samples
+             * @default 30
+             */
+            rate_hz: number;
+            /**
+             * Since Seq
+             * @description Resume after this sample; null: from now on
+             * @default null
+             */
+            since_seq: number | null;
+            /**
+             * Topics
+             * @default [
+             *       "telemetry",
+             *       "session"
+             *     ]
+             */
+            topics: ("telemetry" | "session")[];
+            /**
+             * Type
+             * @constant
+             */
+            type: "subscribe";
+        };
+        /**
+         * Telemetry
+         * @description Samples as columns. `seq` is the newest sample's; `dropped` counts what this client has missed so far.
+         */
+        Telemetry: {
+            /** Demand */
+            demand: (number | null)[][];
+            /** Demand Acceleration */
+            demand_acceleration: (number | null)[][];
+            /** Demand Rate */
+            demand_rate: (number | null)[][];
+            /** Dropped */
+            dropped: number;
+            /** Flags */
+            flags: number[];
+            /** Following Error Deg */
+            following_error_deg: (number | null)[][];
+            /** Lateness Us */
+            lateness_us: (number | null)[];
+            /** Margin */
+            margin: (number | null)[];
+            /** Measured */
+            measured: (number | null)[][];
+            /** Measured Rate */
+            measured_rate: (number | null)[][];
+            /** Path Scale */
+            path_scale: (number | null)[];
+            /** Path Time S */
+            path_time_s: (number | null)[];
+            /** Revision */
+            revision: number[];
+            /** Sample Seq */
+            sample_seq: number[];
+            /** Seq */
+            seq: number;
+            /** Server Time */
+            server_time: number;
+            /** Solve Error Deg */
+            solve_error_deg: (number | null)[];
+            /** State */
+            state: number[];
+            /** Target */
+            target: (number | null)[][];
+            /** Tick */
+            tick: number[];
+            /** Time Ns */
+            time_ns: number[];
+            /** Tracking Error Deg */
+            tracking_error_deg: (number | null)[];
+            /**
+             * Type
+             * @default telemetry
+             * @constant
+             */
+            type: "telemetry";
+            /** Wall Ns */
+            wall_ns: number[];
+        };
+        /**
+         * TrajectoryIn
+         * @description A flight as JSON columns: `time_s` and one attitude, Euler angles or `q` (w, x, y, z).
+         */
+        TrajectoryIn: {
+            /**
+             * Bank Deg
+             * @default null
+             */
+            bank_deg: number[] | null;
+            /**
+             * Convention
+             * @default nue
+             * @enum {string}
+             */
+            convention: "nue" | "ned";
+            /**
+             * Heading Deg
+             * @default null
+             */
+            heading_deg: number[] | null;
+            /** Name */
+            name: string;
+            /**
+             * Pitch Deg
+             * @default null
+             */
+            pitch_deg: number[] | null;
+            /**
+             * Q
+             * @default null
+             */
+            q: [
+                number,
+                number,
+                number,
+                number
+            ][] | null;
+            /**
+             * Roll Deg
+             * @default null
+             */
+            roll_deg: number[] | null;
+            /** Time S */
+            time_s: number[];
+            /**
+             * Yaw Deg
+             * @default null
+             */
+            yaw_deg: number[] | null;
+        };
+        /**
+         * TrajectoryOut
+         * @description A stored flight. Its address is the SHA-256 of the attitude samples, whatever file they came in.
+         */
+        TrajectoryOut: {
+            /**
+             * Convention
+             * @enum {string}
+             */
+            convention: "nue" | "ned";
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Duration S */
+            duration_s: number;
+            /** Name */
+            name: string;
+            /** Peak Body Rate Deg S */
+            peak_body_rate_deg_s: number | null;
+            /**
+             * Rate Hz
+             * @description From the median step; null for one sample
+             */
+            rate_hz: number | null;
+            /** Samples */
+            samples: number;
+            /** Sha256 */
+            sha256: string;
+            /** Source Bytes */
+            source_bytes: number;
+            /**
+             * Source Format
+             * @enum {string}
+             */
+            source_format: "csv" | "parquet" | "json";
+            /**
+             * Source Sha256
+             * @description SHA-256 of the uploaded bytes
+             */
+            source_sha256: string;
+            /** Start S */
+            start_s: number;
+            /** Uniform */
+            uniform: boolean;
+            /** Warnings */
+            warnings: components["schemas"]["Notice"][];
+        };
+        /**
+         * TrajectoryPreview
+         * @description A thinned flight for plots: columns of equal length.
+         */
+        TrajectoryPreview: {
+            /** Pitch Deg */
+            pitch_deg: number[];
+            /** Q */
+            q: [
+                number,
+                number,
+                number,
+                number
+            ][];
+            /** Roll Deg */
+            roll_deg: number[];
+            /**
+             * Samples
+             * @description Of the whole flight
+             */
+            samples: number;
+            /** Sha256 */
+            sha256: string;
+            /** Time S */
+            time_s: number[];
+            /** Yaw Deg */
+            yaw_deg: number[];
+        };
+        /** Unload */
+        Unload: {
+            /** @default {} */
+            args: components["schemas"]["NoArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "unload";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * ViolationOut
+         * @description A run of samples beyond a limit, at its worst one.
+         */
+        ViolationOut: {
+            /**
+             * Frame
+             * @enum {string}
+             */
+            frame: "base" | "outer" | "middle" | "inner";
+            /**
+             * Limit
+             * @enum {string}
+             */
+            limit: "position" | "rate" | "acceleration";
+            /**
+             * Samples
+             * @description Length of the run
+             */
+            samples: number;
+            /** Time S */
+            time_s: number;
+            /**
+             * Value
+             * @description deg, deg/s or deg/s^2, by the limit
+             */
+            value: number;
+        };
+    };
+    responses: never;
+    parameters: never;
+    requestBodies: never;
+    headers: never;
+    pathItems: never;
+}
+export type $defs = Record<string, never>;
+export interface operations {
+    list_audit_api_v1_audit_get: {
+        parameters: {
+            query?: {
+                /** @description Id to go on from, backward */
+                before?: number | null;
+                limit?: number;
+                rig?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditOut"][];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    health_api_v1_health_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HealthOut"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_methods_api_v1_methods_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MethodOut"][];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    metrics_api_v1_metrics_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": unknown;
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_plans_api_v1_plans_get: {
+        parameters: {
+            query?: {
+                rig?: string | null;
+                trajectory?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanOut"][];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    add_plan_api_v1_plans_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PlanIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_plan_api_v1_plans__plan__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                plan: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    remove_plan_api_v1_plans__plan__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                plan: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A session has loaded it */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    plan_samples_api_v1_plans__plan__samples_get: {
+        parameters: {
+            query?: {
+                points?: number;
+            };
+            header?: never;
+            path: {
+                plan: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanSamples"];
+                };
+            };
+            /** @description The plan is not done */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_rigs_api_v1_rigs_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RigOut"][];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_rig_api_v1_rigs__rig__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RigOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_alarms_api_v1_rigs__rig__alarms_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AlarmOut"][];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    command_api_v1_rigs__rig__commands_post: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Connect"] | components["schemas"]["Load"] | components["schemas"]["Arm"] | components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Stop"] | components["schemas"]["Move"] | components["schemas"]["Home"] | components["schemas"]["Jog"] | components["schemas"]["GoLive"] | components["schemas"]["Disarm"] | components["schemas"]["Unload"] | components["schemas"]["Estop"] | components["schemas"]["Acknowledge"] | components["schemas"]["Reset"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CommandOut"];
+                };
+            };
+            /** @description The session refuses; nothing has changed. Names state, command and what is allowed */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rig process does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    estop_api_v1_rigs__rig__estop_post: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CommandOut"];
+                };
+            };
+            /** @description The session refuses; nothing has changed. Names state, command and what is allowed */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rig process does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    lease_api_v1_rigs__rig__lease_post: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["LeaseIn"] | null;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LeaseOut"];
+                };
+            };
+            /** @description The session refuses; nothing has changed. Names state, command and what is allowed */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rig process does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    release_lease_api_v1_rigs__rig__lease_delete: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LeaseOut"];
+                };
+            };
+            /** @description The session refuses; nothing has changed. Names state, command and what is allowed */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rig process does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_session_api_v1_rigs__rig__session_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    stop_api_v1_rigs__rig__stop_post: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CommandOut"];
+                };
+            };
+            /** @description The session refuses; nothing has changed. Names state, command and what is allowed */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rig process does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_runs_api_v1_runs_get: {
+        parameters: {
+            query?: {
+                rig?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunOut"][];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_run_api_v1_runs__run__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    export_run_api_v1_runs__run__export_get: {
+        parameters: {
+            query?: {
+                format?: "csv" | "parquet" | "mcap";
+            };
+            header?: never;
+            path: {
+                run: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                    "application/vnd.apache.parquet": unknown;
+                    "text/csv": unknown;
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    solve_batch_api_v1_solve_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SolveIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SolveOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_trajectories_api_v1_trajectories_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrajectoryOut"][];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    add_trajectory_api_v1_trajectories_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TrajectoryIn"];
+                "multipart/form-data": {
+                    /**
+                     * @default nue
+                     * @enum {string}
+                     */
+                    convention?: "nue" | "ned";
+                    /**
+                     * Format: binary
+                     * @description CSV or Parquet
+                     */
+                    file: string;
+                    /** @description Default: the file's name */
+                    name?: string;
+                };
+            };
+        };
+        responses: {
+            /** @description The very same flight is stored already */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrajectoryOut"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrajectoryOut"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_trajectory_api_v1_trajectories__sha256__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrajectoryOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    remove_trajectory_api_v1_trajectories__sha256__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A plan is made from it */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_trajectory_api_v1_trajectories__sha256__preview_get: {
+        parameters: {
+            query?: {
+                points?: number;
+            };
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrajectoryPreview"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+}

@@ -1,0 +1,83 @@
+/** Which command may be given now, and why not. The server decides; this only spares the operator a refusal. */
+import type { Freshness } from "./freshness";
+
+export interface CommandLook {
+  name: string;
+  label: string;
+  /** Sets the rig in motion or lets it: refused on stale data. */
+  motion: boolean;
+  key?: string;
+}
+
+const motion = (name: string, label: string, key?: string): CommandLook =>
+  key ? { name, label, motion: true, key } : { name, label, motion: true };
+const still = (name: string, label: string, key?: string): CommandLook =>
+  key ? { name, label, motion: false, key } : { name, label, motion: false };
+
+/** In the order of their buttons. Stop and E-stop are not here: they have buttons of their own, always enabled. */
+export const COMMANDS: readonly CommandLook[] = [
+  still("connect", "Connect"),
+  still("load", "Load"),
+  motion("arm", "Arm"),
+  motion("start", "Start"),
+  still("hold", "Hold", "Space"),
+  motion("resume", "Resume", "Space"),
+  motion("move", "Move to…"),
+  motion("home", "Home"),
+  still("disarm", "Disarm"),
+  still("unload", "Unload"),
+  still("acknowledge", "Acknowledge"),
+  still("reset", "Reset"),
+];
+
+export interface Circumstances {
+  state: string | null;
+  allowed: readonly string[];
+  freshness: Freshness;
+  /** Whether this console holds the lease. */
+  leased: boolean;
+  /** Whether a plan that can be flown on this rig is chosen, for `load`. */
+  plan: boolean;
+  /** Alarms that wait to be acknowledged. */
+  unacknowledged: number;
+  /** A command of ours is under way. */
+  busy: boolean;
+}
+
+export type Verdict = { enabled: true } | { enabled: false; why: string };
+
+const no = (why: string): Verdict => ({ enabled: false, why });
+
+/** Whether `command` may be given. Stop and E-stop always may: no lease, no fresh data, no link state is asked for. */
+export function verdict(command: string, now: Circumstances): Verdict {
+  if (command === "stop" || command === "estop") return { enabled: true };
+  if (now.state === null) return no("No word from the rig yet");
+  if (!now.allowed.includes(command)) return no(`Not allowed while ${now.state}`);
+  const look = COMMANDS.find(({ name }) => name === command);
+  if ((look?.motion ?? true) && now.freshness === "stale") return no("Data is stale: motion is disabled");
+  if (!now.leased) return no("Take control first");
+  if (command === "load" && !now.plan) return no("Choose a plan first");
+  if (command === "acknowledge" && now.unacknowledged === 0) return no("No alarm waits");
+  if (command === "reset" && now.unacknowledged > 0) return no("Acknowledge the alarms first");
+  if (now.busy) return no("A command is under way");
+  return { enabled: true };
+}
+
+/** The step a run most likely takes next, drawn as the main button; null where there is none. */
+export function nextStep(state: string | null): string | null {
+  const steps: Record<string, string> = {
+    disconnected: "connect",
+    idle: "load",
+    ready: "arm",
+    armed: "start",
+    running: "hold",
+    held: "resume",
+  };
+  return state === null ? null : (steps[state] ?? null);
+}
+
+/** After a trip: acknowledge while an alarm waits for it, then reset. */
+export function recoveryStep(state: string | null, unacknowledged: number): string | null {
+  if (state !== "faulted" && state !== "estopped") return null;
+  return unacknowledged > 0 ? "acknowledge" : "reset";
+}

@@ -1,0 +1,22 @@
+/** How old the data on the screen is, and whether a person may still steer by it. */
+import type { Link } from "../adapter/link";
+
+/** Beyond this the numbers no longer follow the rig closely; they are marked. */
+export const LATE_MS = 250;
+/** Beyond this no motion may be commanded from what is on the screen. */
+export const STALE_MS = 1000;
+
+export type Freshness = "fresh" | "late" | "stale";
+
+/** Age of the newest record now [ms]: its age when sent, half a round trip, and the wait since; null before the first. */
+export function dataAgeMs(link: Link, nowMs: number): number | null {
+  if (link.receivedAtMs === null || link.ageAtSendMs === null) return null;
+  return Math.max(0, link.ageAtSendMs + (link.roundTripMs ?? 0) / 2 + nowMs - link.receivedAtMs);
+}
+
+/** A link that is not open is stale however young its last record is. */
+export function freshness(link: Link, nowMs: number): Freshness {
+  const age = dataAgeMs(link, nowMs);
+  if (link.phase !== "open" || age === null || !(age <= STALE_MS)) return "stale";
+  return age > LATE_MS ? "late" : "fresh";
+}

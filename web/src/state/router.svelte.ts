@@ -1,0 +1,18 @@
+/** Where the console is; the browser's history is the source. */
+import { pathOf, routeOf, type Page } from "../rules/router";
+
+class Router {
+  route = $state.raw(routeOf(location.pathname));
+
+  constructor() {
+    window.addEventListener("popstate", () => (this.route = routeOf(location.pathname)));
+  }
+
+  go(page: Page, item?: string | null): void {
+    const path = pathOf(page, item);
+    if (path !== location.pathname) history.pushState(null, "", path);
+    this.route = routeOf(path);
+  }
+}
+
+export const router = new Router();
