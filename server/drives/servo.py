@@ -43,7 +43,8 @@ def advance(
         if mode == ENABLED and quiet + tick > watchdog:
             mode = BRAKING
         for sub in range(SUBSTEPS):
-            share = (sub + 1.0) / SUBSTEPS if tick == 0 else 1.0
+            # The reference now, not at the substep's end: the servo would lead by half a tick.
+            share = float(sub) / SUBSTEPS if tick == 0 else 1.0
             for i in range(4):
                 if parameters[PRESENT, i] == 0.0:
                     continue

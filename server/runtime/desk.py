@@ -145,7 +145,8 @@ class Desk:
 
     def _arm(self, request: wire.Request, now: float) -> None:
         loop = self._loop
-        orders.check_disk(loop.config.runs, loop.config.min_free_mb)
+        silent_s = now - int(loop.shared.header["recorder_beat_ns"][0]) / 1e9
+        orders.check_record(loop.config.runs, loop.config.min_free_mb, silent_s)
         pair = orders.asked_pair(request.args, loop.machine.binding)
         loop.machine.check_pair(pair)
         try:

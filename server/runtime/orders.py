@@ -82,8 +82,12 @@ def asked_pair(args: dict[str, Any], bound: Binding | None) -> Binding | None:
     )
 
 
-def check_disk(runs: Path, min_free_mb: float) -> None:
+def check_record(runs: Path, min_free_mb: float, recorder_silent_s: float) -> None:
     """Raise `OrderError` where a run could not be recorded."""
+    if recorder_silent_s > 2.0:
+        raise OrderError(
+            "no_record", "the recorder does not run: it is started anew while the rig is at rest, try again"
+        )
     try:
         runs.mkdir(parents=True, exist_ok=True)
         free = shutil.disk_usage(runs).free / 1e6

@@ -17,6 +17,7 @@ from server.runtime.place import Place
 from server.runtime.shared import Shared
 
 _LOCK_TRIES = 50
+_RECORDER_S = 10.0
 
 
 def main() -> int:
@@ -45,8 +46,9 @@ def main() -> int:
     # A rig is stopped by command; a stray Ctrl-C or hang-up must not drop it in mid-flight.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    warm.kernels(settings)
     recorder = start_recorder(memory, settings.runs)
+    warm.kernels(settings)
+    _wait_for(recorder, shared)
     loop: RigLoop | None = None
     try:
         realtime = clock.go_realtime(settings.realtime_priority, settings.cpu)
@@ -71,6 +73,15 @@ def start_recorder(memory: Path, runs: Path) -> "subprocess.Popen[bytes]":
     return subprocess.Popen([*command, "--parent", str(os.getpid())], stdin=subprocess.DEVNULL)
 
 
+def _wait_for(recorder: "subprocess.Popen[bytes]", shared: Shared) -> None:
+    """Wait for the recorder's first sign of life; without one the session will refuse to arm, and say why."""
+    deadline = time.monotonic() + _RECORDER_S
+    while time.monotonic() < deadline and recorder.poll() is None:
+        if int(shared.header["recorder_beat_ns"][0]):
+            return
+        time.sleep(0.01)
+
+
 def _lock(place: Place) -> int | None:
     for _ in range(_LOCK_TRIES):
         fd = place.take_lock()
@@ -81,4 +92,7 @@ def _lock(place: Place) -> int | None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    status = main()
+    logging.shutdown()
+    # Not through the interpreter's end: with the collector frozen, extension modules complain of leaks there.
+    os._exit(status)

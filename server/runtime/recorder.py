@@ -31,7 +31,7 @@ class Recorder:
         self._runs = runs
         self._record: RunRecord | None = None
         self._next = shared.ring.head  # last sequence that was taken
-        self._events = int(self._header["event_head"][0])
+        self._events = int(self._header["recorder_event"][0])
         self._until: int | None = None  # last sequence of a run that has ended
         self._cut_at = self._statistics_at = self._space_at = 0.0
 
@@ -50,6 +50,7 @@ class Recorder:
                 self._record.add_event(event)
             if event["kind"] == "run_end":
                 self._until = int(event["head"])
+        self._header["recorder_event"] = self._events
         if self._record is None:
             self._next = self._shared.ring.head
         else:

@@ -51,6 +51,7 @@ HEADER = np.dtype(
         ("recorder_pid", "<i8"),
         ("recorder_beat_ns", "<i8"),
         ("recorder_seq", "<u8"),
+        ("recorder_event", "<u8"),  # the last event that was taken: one started anew goes on from there
         ("recorder_lost", "<u8"),
         ("recorder_bytes", "<u8"),
         ("recorder_chunks", "<u8"),
