@@ -21,7 +21,7 @@ from solver.verify import POSITION_TOLERANCE, TOLERANCE
 
 Array = NDArray[np.float64]
 
-LONGEST = 20.0  # [s]
+SHORTEST, LONGEST = 0.1, 20.0  # [s] of a cubic
 STRETCH = 1.02  # from one duration that is tried to the next
 RAMPS = (0.2, 0.1, 0.05, 0.02, 0.01)  # [s]
 FULL = 0.999  # of the acceleration limit
@@ -86,7 +86,7 @@ def _candidates(limits: FrameLimits, x: float, v: float, a: float, dt: float) ->
     """Lead-ins from smooth and short to tight, each (m,) [rad]."""
     # Below this duration the cubic's peak alone, 1.5 v / T, is above the limit.
     least = 1.5 * abs(v) / limits.max_acceleration if math.isfinite(limits.max_acceleration) else 0.0
-    samples = max(2, math.ceil(0.9 * least / dt))
+    samples = max(2, math.ceil(max(0.9 * least, SHORTEST) / dt))
     while samples * dt <= LONGEST:
         T = samples * dt
         s = np.arange(samples) / samples
