@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.planner.basis import WIDTH, spline_basis
+from solver.planner.basis import WIDTH, Basis, spline_basis
 from solver.planner.options import PlanOptions
 from solver.planner.programme import Answer, Equality, QuadraticProgramme, solve_programme
 from solver.planner.refine import MET, NEAR, STRIDE, Limits, cost_weights, rig_limits, worst
-from solver.planner.rows import ROW, displaced, error_bands, limit_rows, over_limits
+from solver.planner.rows import ROW, Flags, displaced, error_bands, limit_rows, over_limits
 from solver.rig import Rig
 from solver.solution import EXACT, limited_code
 
@@ -153,7 +153,7 @@ def _codes(n: int, answer: Answer, tag: NDArray[np.int64]) -> NDArray[np.int16]:
 
 
 def _programme(
-    time: Array, attitude: Array, x: Array, rig: Rig, limits: Limits, options: PlanOptions, basis, stride: int, flags,
+    time: Array, attitude: Array, x: Array, rig: Rig, limits: Limits, options: PlanOptions, basis: Basis, stride: int, flags: Flags,
     trust: float, pinned: tuple[bool, bool], start: Array | None,
 ) -> tuple[QuadraticProgramme, NDArray[np.int64], float]:  # fmt: skip
     size = 4 * basis.size
@@ -182,6 +182,7 @@ def _programme(
             equalities.append(Equality(int(basis.first[0]), row, float(start[i] - x[0, i]), i))
     tag = tag[:count]
     problem = QuadraticProgramme(
-        bands, gradient, origin[:count], rows[:count], bound[:count], tag % 12 // 3, trust, pinned, tuple(equalities), 4
+        bands, gradient, origin[:count], rows[:count], bound[:count], tag % 12 // 3, origin[:count], trust, pinned,
+        tuple(equalities), 4,
     )
     return problem, tag, error

@@ -1,8 +1,8 @@
 """The way from rest to the first sample of a plan, and from the last one to rest.
 
 Each frame's rate goes from zero to the flight's along a curve with a plateau of acceleration in the middle and the
-flight's acceleration at its end, so that angles, rates and accelerations are continuous. All frames take the same
-time, the shortest for which the sampled lead, its joint with the flight included, keeps inside every limit.
+flight's acceleration at its end, so that angles, rates and accelerations are continuous. Each frame takes the
+shortest time for which its sampled lead, the joint with the flight included, keeps inside its limits.
 """
 
 import math
@@ -10,11 +10,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.planner.refine import MET, rig_limits, worst
+from solver.planner.refine import MET
 from solver.rig import FRAMES, LIMITS, Rig
 
 Array = NDArray[np.float64]
-ROOM = 0.8  # of v^2 / a: the way that a lead needs between rest and rate v
 LONGEST = 120.0  # [s]
 EDGE = 0.25  # share of the lead in which the deceleration rises, and in which it falls
 AT_REST = 1e-9  # of a limit: rates and accelerations below this need no lead
@@ -41,31 +40,52 @@ def lead_out(time: Array, angles: Array, rig: Rig) -> tuple[Array, str]:
     if len(t) == 3:
         bend = (rate - (x[-2] - x[-3]) / (t[-2] - t[-3])) / (0.5 * (t[-1] - t[-3]))
     rate = rate + 0.5 * h * bend  # at the last sample rather than half an interval before
-    limits = rig_limits(rig)
-    still = np.abs(x[-1] - x[-2]) / h <= AT_REST * np.minimum(rig.max_rate, 1.0)
-    if still.all():
-        return none, ""
-    # No frame can do it faster than at its full deceleration.
-    T = max(4.0 * h, float(np.max(np.abs(rate) / np.minimum(rig.max_acceleration, 1e6))))
-    closed = (math.inf, 0, 0, 0)
+    ways: list[Array] = []
+    for i in range(4):
+        if abs(x[-1, i] - x[-2, i]) / h <= AT_REST * min(float(rig.max_rate[i]), 1.0) and abs(bend[i]) * h <= AT_REST:
+            ways.append(np.empty(0))
+            continue
+        way, limit = _frame_way(t, x[:, i], float(rate[i]), float(bend[i]), h, rig, i)
+        if not way.size:
+            return none, f"no room to brake to rest: the {FRAMES[i]} frame's {LIMITS[limit]} limit closes the way"
+        ways.append(way)
+    samples = np.repeat(x[-1:], max(len(way) for way in ways), axis=0)
+    for i, way in enumerate(ways):
+        samples[: len(way), i] = way
+        samples[len(way) :, i] = way[-1] if way.size else x[-1, i]
+    return samples, ""
+
+
+def _frame_way(
+    t: Array, x: Array, rate: float, bend: float, h: float, rig: Rig, frame: int
+) -> tuple[Array, int]:
+    """(angles (m,) [rad] of one frame on its way to rest, -) or (empty, the limit that closes the way)."""
+    low, high = float(rig.position_min[frame]), float(rig.position_max[frame])
+    top, deceleration = float(rig.max_rate[frame]) * (1.0 + MET), float(rig.max_acceleration[frame]) * (1.0 + MET)
+    T = max(4.0 * h, 1.1 * abs(rate) / min(deceleration, 1e6))
+    closed = 0
     while T < LONGEST:
-        m = max(3, math.ceil(T / h))
-        s = np.arange(1, m + 1)[:, None] / m
-        samples = x[-1] + _way(s, rate, bend, m * h)
-        all_time = np.concatenate([t, t[-1] + h * np.arange(1, m + 3)])
-        path = np.concatenate([x, samples, samples[-1:], samples[-1:]])
-        over = worst(all_time, path, limits)
-        if over[0] <= MET and not (over[3] == 0 and over[0] > 0.0):
-            return samples, ""
-        if over[0] < closed[0]:
-            closed = over
+        m = max(4, math.ceil(T / h))
+        s = np.arange(1, m + 1) / m
+        way = x[-1] + _way(s, rate, bend, m * h)
+        path = np.r_[x, way, way[-1], way[-1]]
+        v = np.diff(path) / np.r_[np.diff(t), np.full(m + 2, h)]
+        a = np.diff(v) / np.r_[0.5 * (t[2:] - t[:-2]), np.full(m + 2, h)]
+        if np.abs(a).max() > deceleration:
+            closed = 2
+        elif np.abs(v).max() > top:
+            closed = 1
+        elif way.max() > high or way.min() < low:
+            closed = 0
+            break  # longer is farther
+        else:
+            return way, closed
         T = 1.04 * T + h
-    _, _, frame, limit = closed
-    return none, f"no room to brake to rest: the {FRAMES[frame]} frame's {LIMITS[limit]} limit closes the way"
+    return np.empty(0), closed
 
 
-def _way(s: Array, rate: Array, bend: Array, T: float) -> Array:
-    """Angle gone (m, 4) at shares s (m, 1) of the time T, from rate (4,) and acceleration (4,) to rest.
+def _way(s: Array, rate: float, bend: float, T: float) -> Array:
+    """Angle gone (m,) [rad] at shares s (m,) of the time T, from rate [rad/s] and acceleration [rad/s^2] to rest.
 
     The rate falls as 1 - smooth(s), smooth rising with a plateau of slope over the middle; the flight's acceleration
     dies out as (1 - s)^3 s.

@@ -111,7 +111,7 @@ def _window(
     return refine(
         time[part], attitude[part], d[part], rig, options, pinned=(begin > 0, end < n),
         start=start and begin == 0, start_rate=start_rate if begin == 0 else None,
-        judged=None if end == n else following - begin,
+        ends=(begin == 0, end == n), judged=None if end == n else following - begin,
     )  # fmt: skip
 
 

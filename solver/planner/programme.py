@@ -42,6 +42,7 @@ class QuadraticProgramme:
     rows: Array  # (r, ROW)
     bound: Array  # (r,)
     frame: NDArray[np.int64]  # (r,)
+    group: NDArray[np.int64]  # (r,) rows of one group share a slack
     trust: float
     pinned: tuple[bool, bool]
     equalities: tuple[Equality, ...] = ()
@@ -66,7 +67,7 @@ def matrices(
     m, width = problem.bands.shape
     every = problem.every
     r = len(problem.origin)
-    bins, bin_of_row = np.unique(problem.origin, return_inverse=True) if r else (np.empty(0, int), np.empty(0, int))
+    bins, bin_of_row = np.unique(problem.group, return_inverse=True) if r else (np.empty(0, int), np.empty(0, int))
     s = len(bins)
     diagonals = [problem.bands[: m - b, b] for b in range(min(width, m))]
     upper_part = sparse.diags(diagonals, list(range(len(diagonals))), shape=(m, m))

@@ -11,17 +11,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.planner.basis import spline_basis
+from solver.planner.basis import Basis, spline_basis
 from solver.planner.chain import reference_rates
 from solver.planner.curve import closest_all, null_vectors
 from solver.planner.options import PlanOptions
 from solver.planner.programme import Equality, QuadraticProgramme, solve_programme
-from solver.planner.rows import ROW, cost_bands, difference, displaced, fill_row, limit_rows, over_limits
+from solver.planner.rows import ROW, Flags, cost_bands, difference, displaced, fill_row, limit_rows, over_limits
 from solver.rig import Rig
 
 Array = NDArray[np.float64]
 MET = 1e-7  # of a limit: over it by less counts as inside
 NEAR = 0.6  # share of a limit from which its rows are in the programme at once
+ROOM = 0.8  # of v^2 / a: the way that a lead needs between rest and rate v
+SHORTEST = 3.0  # samples: a lead has four at least, of half the rate on average, and the rate it starts from may rise
+LEAD_UNIT = 0.005  # [rad] short of that room counts as much as the whole of a rate limit
 STRIDE = 3.0  # rows a knot
 Progress = Callable[[int, int], None]
 
@@ -69,12 +72,12 @@ def worst(time: Array, angles: Array, limits: Limits, last: int | None = None) -
 def refine(
     time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, *,
     pinned: tuple[bool, bool] = (False, False), start: bool = False, start_rate: Array | None = None,
-    judged: int | None = None, iterations: int | None = None,
+    ends: tuple[bool, bool] = (False, False), judged: int | None = None, iterations: int | None = None,
 ) -> Refined:  # fmt: skip
     """One window: time (n,), attitude (n, 3, 3), angles (n, 4) exact poses to begin with.
 
     `pinned` ends keep value, slope and bend; `start` keeps the first pose, `start_rate` (4,) [rad/s] the rate of the
-    first interval. Only the first `judged` samples count for the verdict of the window.
+    first interval. `ends` are where a lead from or to rest must find room. Only the first `judged` samples count for the verdict of the window.
     """
     n = len(time)
     limits = rig_limits(rig, options.reserve)
@@ -94,7 +97,7 @@ def refine(
     best_cost = np.inf
     count = 0
     for count in range(1, (iterations or options.iterations) + 1):
-        problem = _programme(time, d, rig, limits, options, basis, stride, flags, trust, pinned, start, start_rate)
+        problem = _programme(time, d, rig, limits, options, basis, stride, flags, trust, pinned, start, start_rate, ends)
         answer = solve_programme(problem[0])
         moved = np.empty_like(d)
         displaced(d, problem[1], basis.first, basis.values, answer.coefficients, moved)
@@ -125,8 +128,8 @@ def refine(
 
 
 def _programme(
-    time: Array, d: Array, rig: Rig, limits: Limits, options: PlanOptions, basis, stride: int, flags, trust: float,
-    pinned: tuple[bool, bool], start: bool, start_rate: Array | None,
+    time: Array, d: Array, rig: Rig, limits: Limits, options: PlanOptions, basis: Basis, stride: int, flags: Flags, trust: float,
+    pinned: tuple[bool, bool], start: bool, start_rate: Array | None, ends: tuple[bool, bool],
 ) -> tuple[QuadraticProgramme, Array]:  # fmt: skip
     n = np.empty_like(d)
     null_vectors(rig.geometry.horizontal, d, n)
@@ -163,11 +166,52 @@ def _programme(
             row += n[0, i] * part
             value += n[0, i] * (start_rate[i] - difference(1, 1, i, time, d))
         equalities.append(Equality(at, row, value))
+    cuts = lead_cuts(time, d, n, basis, limits, ends)
+    group = origin[:count]
+    if cuts:
+        origin = np.r_[origin[:count], [cut.origin for cut in cuts]]
+        rows = np.vstack([rows[:count], [cut.row for cut in cuts]])
+        bound = np.r_[bound[:count], [cut.value for cut in cuts]]
+        group = np.r_[group, np.full(len(cuts), basis.size)]
+        count += len(cuts)
     problem = QuadraticProgramme(
-        bands, gradient, origin[:count], rows[:count], bound[:count], np.zeros(count, np.int64), trust, pinned,
+        bands, gradient, origin[:count], rows[:count], bound[:count], np.zeros(count, np.int64), group, trust, pinned,
         tuple(equalities),
     )
     return problem, n
+
+
+def lead_cuts(
+    time: Array, d: Array, n: Array, basis: Basis, limits: Limits, ends: tuple[bool, bool]
+) -> list[Equality]:
+    """Rows c <= value that leave room for the leads: ROOM v^2 / a between rest and rate v, by its tangents, and a few
+    samples' way."""
+    cuts: list[Equality] = []
+    count = len(time)
+    for at_end in (False, True):
+        if not ends[at_end] or count < 3:
+            continue
+        k, first = (count - 1, count - 2) if at_end else (0, 0)
+        origin = int(basis.first[first])
+        shift = int(basis.first[k]) - origin
+        h = time[first + 1] - time[first]
+        for i in np.flatnonzero(np.isfinite(limits.high) & np.isfinite(limits.acceleration)):
+            rate_row = np.zeros(ROW)
+            fill_row(1, first + 1, i, time, n, basis.first, basis.values, rate_row)
+            here = np.zeros(ROW)
+            here[shift : shift + basis.values.shape[1]] = n[k, i] * basis.values[k]
+            rate = difference(1, first + 1, i, time, d)
+            a = limits.acceleration[i]
+            for side in (1.0, -1.0):  # the end of the range that the frame runs to after the end, or came from before
+                room = limits.high[i] - d[k, i] if side > 0 else d[k, i] - limits.low[i]
+                toward = side if at_end else -side
+                tops = limits.rate[i] if np.isfinite(limits.rate[i]) else max(abs(rate), 1.0)
+                for v in np.r_[np.linspace(0.2, 1.0, 5) * tops, abs(rate)]:
+                    slope = 2.0 * ROOM * v / a + SHORTEST * h
+                    row = side * here + toward * slope * rate_row
+                    value = room - slope * toward * rate + ROOM / a * v * v
+                    cuts.append(Equality(origin, row / LEAD_UNIT, value / LEAD_UNIT))
+    return cuts
 
 
 def _home_cost(rig: Rig, options: PlanOptions) -> float:

@@ -18,7 +18,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.uint8]
 ROW = WIDTH + 2  # functions that one row of differences can touch
 POSITION, RATE, ACCELERATION = range(3)
-POSITION_UNIT = 0.1  # [rad] counts as much as the whole of a rate limit
+POSITION_UNIT = 0.02  # [rad] counts as much as the whole of a rate limit
 
 
 @kernel
