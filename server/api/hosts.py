@@ -1,6 +1,7 @@
 """The rig processes of one server: adopted at start, started when a session is first wanted."""
 
 import asyncio
+import contextlib
 import logging
 from collections.abc import Callable
 from pathlib import Path
@@ -8,8 +9,10 @@ from pathlib import Path
 from server.runtime.config import RigConfig
 from server.runtime.host import HostError, RigHost
 from server.runtime.place import Place
+from server.session.states import IN_MOTION
 from server.store.rig_file import RigStore
 
+BRAKING_S = 15.0
 log = logging.getLogger(__name__)
 
 
@@ -67,8 +70,22 @@ class RigHosts:
 
     async def close(self, *, stop_rigs: bool) -> None:
         """Let go of all, ending their processes with `stop_rigs`."""
-        closing = [host.close(stop_rigs) for host in self._hosts.values()]
+        closing = [_close(host, stop_rigs) for host in self._hosts.values()]
         for result in await asyncio.gather(*closing, return_exceptions=True):
             if isinstance(result, BaseException):
                 log.error("a rig did not close", exc_info=result)
         self._hosts.clear()
+
+
+async def _close(host: RigHost, stop_rig: bool) -> None:
+    """Close; a rig that is to end brakes inside its limits first."""
+    if stop_rig and host.snapshot().state in IN_MOTION:
+        await host.stop("server")
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(BRAKING_S):
+                while True:
+                    revision = host.revision
+                    if host.snapshot().state not in IN_MOTION:
+                        break
+                    await host.wait_change(revision)
+    await host.close(stop_rig)

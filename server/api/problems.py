@@ -61,7 +61,7 @@ def problem_of(error: Exception) -> Problem:
         case RequestValidationError() | ValidationError():
             return validation_problem(error.errors())
         case NotFoundError():
-            return not_found(error.kind, error.name).problem
+            return ApiError(404, "not-found", str(error)).problem
         case FileError():
             return ApiError(422, "file", str(error), errors=[_file_problem(error)]).problem
         case InputError() | MethodError():

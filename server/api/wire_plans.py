@@ -90,6 +90,31 @@ class ReportOut(Wire):
     warnings: list[Notice] = Field(default=[])
 
 
+class MarginOut(Wire):
+    """The smallest distance to a limit, and when; negative beyond it."""
+
+    value: float
+    time_s: float
+
+
+class FrameMargins(Wire):
+    """Null: no limit. deg, deg/s, deg/s^2."""
+
+    position_deg: MarginOut | None
+    rate_deg_s: MarginOut | None
+    acceleration_deg_s2: MarginOut | None
+
+
+class MarginsOut(Wire):
+    """Of every frame; `singularity` is the smallest sin^2(outer) + cos^2(middle), zero at the rig's singularity."""
+
+    base: FrameMargins | None = None
+    outer: FrameMargins
+    middle: FrameMargins
+    inner: FrameMargins
+    singularity: MarginOut | None
+
+
 class JobErrorOut(Wire):
     """Why a job failed."""
 
@@ -126,6 +151,8 @@ class PlanOut(Wire):
     lead_in_s: float | None
     lead_out_s: float | None
     report: ReportOut | None
+    verdict: str | None = Field(description="What the verdict rests on, in words")
+    margins: MarginsOut | None
 
 
 class PlanSamples(Wire):

@@ -37,17 +37,26 @@ class LoadArgs(Wire):
     plan: str = Field(description="Id of a flyable plan of this rig")
 
 
+class ArmArgs(Wire):
+    """The pair that the caller means to arm; refused where another one is loaded."""
+
+    plan_hash: str | None = None
+    rig_hash: str | None = None
+
+
 class MoveArgs(Wire):
     target_deg: Four
 
 
 class JogArgs(Wire):
+    """One step of one frame, from where the rig is commanded to be."""
+
     frame: FrameName
-    rate_deg_s: float = Field(description="Zero stops the jog")
+    step_deg: float
 
 
 class AcknowledgeArgs(Wire):
-    alarms: list[int] | None = Field(default=None, description="Numbers; null: all that stand")
+    numbers: list[int] | None = Field(default=None, description="Of alarms; null: all that stand")
 
 
 class _Command(Wire):
@@ -66,7 +75,7 @@ class Load(_Command):
 
 class Arm(_Command):
     command: Literal["arm"]
-    args: NoArgs = NoArgs()
+    args: ArmArgs = ArmArgs()
 
 
 class Start(_Command):

@@ -36,8 +36,8 @@ class FileError(StoreError):
 class NotFoundError(StoreError):
     """A thing that is named and not in the store."""
 
-    def __init__(self, kind: str, name: str) -> None:
-        super().__init__(f"no {kind} named {name!r}")
+    def __init__(self, kind: str, name: str, hint: str = "") -> None:
+        super().__init__(f"no {kind} named {name!r}{hint and ': '}{hint}")
         self.kind = kind
         self.name = name
 

@@ -1,4 +1,4 @@
-"""Options of a method from text or JSON: names and types are those of its dataclass in `solver`."""
+"""Methods by name with their options, from text or JSON: names and types are those of their dataclasses in `solver`."""
 
 from dataclasses import asdict, fields
 from typing import Any
@@ -6,18 +6,26 @@ from typing import Any
 from solver.errors import MethodError
 from solver.methods import METHODS
 
+PLAN = "plan"
+PLAN_SOURCE = "the whole flight at once: dynamic programming on both charts, then a sparse quadratic programme"
+
+
+def method_names() -> tuple[str, ...]:
+    """All methods, in the order of the command line."""
+    return (PLAN, *METHODS)
+
 
 def method_options(method: str, values: dict[str, Any]) -> Any:
-    """The options object of a method, None where nothing is given and the method has its defaults.
+    """The options object of a method; None, its defaults, where nothing is given.
 
     Raises `MethodError` for an unknown method or option, or a value of another type.
     """
-    if method not in METHODS:
-        raise MethodError(f"no method named {method!r}: expected one of {', '.join(METHODS)}")
+    if method not in method_names():
+        raise MethodError(f"no method named {method!r}: expected one of {', '.join(method_names())}")
     if not values:
         return None
-    kind = METHODS[method].options
     defaults = option_defaults(method)
+    kept = {}
     for name, value in values.items():
         if name not in defaults:
             known = ", ".join(defaults) or "none"
@@ -25,10 +33,38 @@ def method_options(method: str, values: dict[str, Any]) -> Any:
         wanted = type(defaults[name])
         if not (isinstance(value, wanted) or (wanted is float and type(value) is int)):
             raise MethodError(f"option {name} of {method}: {value!r}: expected {wanted.__name__}")
-    return kind(**{name: type(defaults[name])(value) for name, value in values.items()})
+        kept[name] = wanted(value)
+    try:
+        return _options_type(method)(**kept)
+    except ValueError as error:
+        raise MethodError(f"options of {method}: {error}") from None
 
 
 def option_defaults(method: str) -> dict[str, Any]:
     """Names and defaults of a method's options."""
-    kind = METHODS[method].options
+    kind = _options_type(method)
     return {field.name: value for field, value in zip(fields(kind), asdict(kind()).values(), strict=True)}
+
+
+def parse_option(text: str, method: str) -> tuple[str, Any]:
+    """(name, value) of `name=value`, the value read as the option's type. Raises `MethodError`."""
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise MethodError(f"option {text!r}: expected name=value")
+    default = option_defaults(method).get(name) if method in method_names() else None
+    try:
+        if isinstance(default, bool):
+            return name, {"true": True, "false": False}[value.lower()]
+        if isinstance(default, (int, float)):
+            return name, type(default)(value)
+    except (ValueError, KeyError):
+        raise MethodError(f"option {name} of {method}: {value!r}: expected {type(default).__name__}") from None
+    return name, value
+
+
+def _options_type(method: str) -> type[Any]:
+    if method == PLAN:
+        from solver.planner import PlanOptions  # its quadratic programme solver is loaded by those who plan
+
+        return PlanOptions
+    return METHODS[method].options

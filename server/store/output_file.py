@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from server.store.errors import FileError
 from solver.solution import Solution
 
 COLUMNS = ("time_s", "base_deg", "outer_deg", "middle_deg", "inner_deg", "error_deg", "limited")
@@ -31,6 +32,23 @@ def replacing(path: Path) -> Iterator[Path]:
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+
+
+def check_writable(path: Path) -> None:
+    """Raise `FileError` where `path` cannot become a file, before work is done for it."""
+    if path.is_dir():
+        raise FileError(str(path), "a file to write, this is a folder")
+    folder = path.parent
+    while not folder.exists():
+        folder = folder.parent
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise FileError(str(path), f"a place to write, {folder} is not one")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all."""
+    with replacing(path) as draft:
+        draft.write_text(text, encoding="utf-8")
 
 
 def write_solution(path: Path, solution: Solution, progress: Callable[[int, int], None] | None = None) -> None:

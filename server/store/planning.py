@@ -3,26 +3,32 @@
 import math
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from server.plan_folder import make_plan, write_plan
 from server.store.errors import StoreError
-from server.store.options import method_options
+from server.store.options import PLAN, method_options
 from server.store.planning_request import PlanRequest
 from server.store.report import make_report, why_infeasible
 from server.store.trajectories import read_arrays
 from solver.attitude import dcm_from_quaternion
 from solver.errors import MethodError
 from solver.lead import lead_in, lead_out
+from solver.planner import plan
+from solver.planner.verdict import margins
 from solver.resample import Resampled, resample
+from solver.rig import FRAMES
 from solver.solution import Solution
 from solver.solve import solve
 from solver.verify import Violation, verify
 
 Progress = Callable[[str, int, int], None]  # phase, done, total
-Array = np.ndarray[Any, np.dtype[np.float64]]
+Array = NDArray[np.float64]
+_NONE = np.empty((0, 4))
 
 
 def make_plan_folder(request: PlanRequest, progress: Progress) -> dict[str, Any]:
@@ -37,31 +43,58 @@ def make_plan_folder(request: PlanRequest, progress: Progress) -> dict[str, Any]
         raise StoreError(f"a flight of at least two samples at {request.rate_hz:g} Hz is needed, this one is a moment")
     at = flight.time - flight.time[0]
     attitude = dcm_from_quaternion(flight.q)
-    solution = solve(
-        at,
-        attitude,
-        request.rig,
-        method=request.method,
-        options=method_options(request.method, request.options),
-        start=None if request.start is None else np.array(request.start),
-        clock=time.perf_counter,
-        progress=lambda done, total: progress("solve", done, total),
-    )
+    made = _solve(request, at, attitude, progress)
+    solution = made.solution
     progress("verify", 0, 1)
     report = make_report(solution, verify(at, solution.angles, request.rig, attitude))
     refusal = why_infeasible(report)
-    before, after = np.empty((0, 4)), np.empty((0, 4))
+    before, after = _NONE, _NONE
     if refusal is None:
         progress("leads", 0, 1)
         try:
-            before, after = _leads(solution, request.rate_hz)
+            before, after = made.leads()
         except MethodError as error:
             refusal = f"the flight itself fits, its way in or out from rest does not: {error}"
     angles = np.concatenate([before, solution.angles, after])
     if refusal is None:
         refusal = _whole(angles, request, len(before))
     progress("write", 0, 1)
-    return _write(request, flight, solution, report, refusal, angles, (len(before), len(after)))
+    result = _write(request, flight, solution, report, refusal, angles, (len(before), len(after)))
+    return result | {"verdict": made.verdict, "margins": _margins(at, solution)}
+
+
+@dataclass(frozen=True)
+class _Made:
+    """A solution, what its verdict rests on, and how to get its leads (which may raise `MethodError`)."""
+
+    solution: Solution
+    verdict: str
+    leads: Callable[[], tuple[Array, Array]]
+
+
+def _solve(request: PlanRequest, at: Array, attitude: Array, progress: Progress) -> _Made:
+    options = method_options(request.method, request.options)
+    start = None if request.start is None else np.array(request.start)
+
+    def tell(done: int, total: int) -> None:
+        progress("solve", done, total)
+
+    clock = time.perf_counter
+    if request.method == PLAN:
+        # Asked directly: the planner keeps room for its own leads and says what its verdict rests on.
+        whole = plan(at, attitude, request.rig, start=start, options=options, clock=clock, progress=tell)
+
+        def planned() -> tuple[Array, Array]:
+            if whole.lead_note:
+                raise MethodError(whole.lead_note)
+            return whole.lead_in, whole.lead_out
+
+        return _Made(whole.solution, whole.verdict.statement, planned)
+    solution = solve(
+        at, attitude, request.rig, method=request.method, options=options, start=start, clock=clock, progress=tell
+    )
+    verdict = "Every sample checked against the limits by code apart from the solver; another method may find more."
+    return _Made(solution, verdict, lambda: _leads(solution, request.rate_hz))
 
 
 def _write(
@@ -77,7 +110,7 @@ def _write(
     inner = slice(leads[0], n - leads[1])
     target, error = np.full((n, 4), math.nan), np.full(n, math.nan)
     target[inner], error[inner] = flight.q, solution.error
-    plan = make_plan(
+    folder = make_plan(
         plan_id=request.plan_id,
         rig=request.rig,
         rate_hz=request.rate_hz,
@@ -92,14 +125,14 @@ def _write(
         name=request.name,
         start_s=float(flight.time[0]),
     )
-    write_plan(request.folder, plan)
+    write_plan(request.folder, folder)
     return {
         "report": report,
         "feasible": report["feasible"],
         "refusal": refusal,
-        "plan_hash": plan.info.plan_hash,
+        "plan_hash": folder.info.plan_hash,
         "samples": n,
-        "duration_s": plan.info.duration_s,
+        "duration_s": folder.info.duration_s,
         "lead_in_s": leads[0] / request.rate_hz,
         "lead_out_s": leads[1] / request.rate_hz,
         "resampling": flight.note,
@@ -135,6 +168,23 @@ def end_motion(angles: Array, dt: float) -> tuple[Array, Array, Array]:
     rate = np.array(rate_rows[len(x)]) @ x / dt
     acceleration = np.array(acceleration_rows[len(x)]) @ x / dt**2
     return np.array(x[0]), rate, acceleration
+
+
+def _margins(at: Array, solution: Solution) -> dict[str, Any]:
+    """The wire's `MarginsOut`."""
+    found = margins(at, solution.angles, solution.rig)
+    kinds = {"position_deg": found.position, "rate_deg_s": found.rate, "acceleration_deg_s2": found.acceleration}
+
+    def margin(value: float, when: float) -> dict[str, float] | None:
+        return {"value": value, "time_s": when} if math.isfinite(value) else None
+
+    rows: dict[str, Any] = {
+        FRAMES[index]: {
+            kind: margin(math.degrees(table[index, 0]), float(table[index, 1])) for kind, table in kinds.items()
+        }
+        for index in solution.rig.geometry.frames
+    }
+    return rows | {"singularity": margin(*found.singularity)}
 
 
 def _whole(angles: Array, request: PlanRequest, lead: int) -> str | None:

@@ -81,7 +81,7 @@ def find_rig(name_or_file: str, folder: Path | None = None) -> RigEntry:
     path = Path(name_or_file)
     if path.is_file():
         return read_rig(path)
-    raise NotFoundError("rig", name_or_file)
+    raise NotFoundError("rig", name_or_file, f"expected the path of a rig file or one of {', '.join(rigs)}")
 
 
 class RigStore:

@@ -10,13 +10,13 @@ from fastapi import APIRouter, Query, Response
 
 from server.api.problems import ApiError
 from server.api.services import Services, ServicesDep
-from server.api.thin import thin
 from server.api.wire_plans import JobErrorOut, MethodOut, PlanIn, PlanOut, PlanSamples, ProgressOut, ReportOut
 from server.plan_folder import read_plan, rig_hash
 from server.store.errors import TransitionError
-from server.store.options import method_options, option_defaults
+from server.store.options import PLAN, PLAN_SOURCE, method_options, option_defaults
 from server.store.plans import UNFINISHED
 from server.store.tables import PlanRow
+from server.store.thin import thin
 from solver.methods import METHODS
 from solver.rig import FRAMES
 
@@ -26,7 +26,8 @@ router = APIRouter(tags=["plans"])
 @router.get("/methods")
 def list_methods() -> list[MethodOut]:
     """The methods that plans, solves and comparisons may name."""
-    return [
+    whole = MethodOut(name=PLAN, source=PLAN_SOURCE, claims_limits=True, options=option_defaults(PLAN))
+    return [whole] + [
         MethodOut(name=m.name, source=m.source, claims_limits=m.claims_limits, options=option_defaults(m.name))
         for m in METHODS.values()
     ]
@@ -122,6 +123,8 @@ def _out(services: Services, row: PlanRow) -> PlanOut:
             "lead_in_s": result.get("lead_in_s"),
             "lead_out_s": result.get("lead_out_s"),
             "report": ReportOut(**result["report"]) if result else None,
+            "verdict": result.get("verdict"),
+            "margins": result.get("margins"),
         }
     )
 

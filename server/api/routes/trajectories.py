@@ -13,12 +13,12 @@ from pydantic import ValidationError
 
 from server.api.problems import ApiError, validation_problem
 from server.api.services import Services, ServicesDep
-from server.api.thin import thin
 from server.api.upload import Upload, receive, too_large
 from server.api.wire import Notice
 from server.api.wire_trajectories import TrajectoryIn, TrajectoryOut, TrajectoryPreview
 from server.store.errors import InUseError
 from server.store.tables import TrajectoryRow
+from server.store.thin import thin
 from server.store.trajectory import Convention, Trajectory, from_columns
 from server.store.trajectory_file import read_trajectory, source_format
 from solver.attitude import dcm_from_quaternion, euler_from_dcm

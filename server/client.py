@@ -1,0 +1,142 @@
+"""A client of the API: what a program does from outside, the demo included. Degrees and seconds, as on the wire."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+from urllib.parse import quote
+
+import httpx
+from websockets.asyncio.client import ClientConnection, connect
+
+API = "/api/v1"
+POLL_S = 0.1
+
+
+class ClientError(Exception):
+    """The server refused, or does not answer. `problem` is its problem document, empty where it sent none."""
+
+    def __init__(self, message: str, status: int | None = None, problem: dict[str, Any] | None = None) -> None:
+        super().__init__(message)
+        self.status = status
+        self.problem = problem or {}
+
+
+class Client:
+    """One server, one operator. Use `async with`; raises `ClientError` from every call."""
+
+    def __init__(self, url: str, name: str = "python", timeout_s: float = 30.0) -> None:
+        self.url = url.rstrip("/")
+        self.name = name
+        self._epoch = 0
+        self._sequence = 0
+        self._http = httpx.AsyncClient(
+            base_url=self.url + API, headers={"X-Fullpose-Client": name}, timeout=timeout_s, trust_env=False
+        )
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self._http.aclose()
+
+    async def health(self) -> dict[str, Any]:
+        """How the server does."""
+        return await self._call("GET", "/health")
+
+    async def rigs(self) -> list[dict[str, Any]]:
+        """All rigs."""
+        return await self._call("GET", "/rigs")
+
+    async def upload(self, file: Path, convention: str = "nue", name: str | None = None) -> dict[str, Any]:
+        """Upload a flight; returns it as stored."""
+        fields = {"convention": convention, **({} if name is None else {"name": name})}
+        content = await asyncio.to_thread(file.read_bytes)
+        return await self._call("POST", "/trajectories", data=fields, files={"file": (file.name, content)})
+
+    async def plan(
+        self,
+        trajectory: str,
+        rig: str,
+        method: str = "plan",
+        options: dict[str, Any] | None = None,
+        start_deg: list[float] | None = None,
+    ) -> dict[str, Any]:
+        """Ask for a plan and wait until its job has ended; look at `status` and `flyable`."""
+        body = {"trajectory": trajectory, "rig": rig, "method": method, "options": options or {}}
+        made = await self._call("POST", "/plans", json=body | {"start_deg": start_deg})
+        while made["status"] in ("queued", "running"):
+            await asyncio.sleep(POLL_S)
+            made = await self._call("GET", f"/plans/{made['id']}")
+        return made
+
+    async def plans(self, trajectory: str | None = None, rig: str | None = None) -> list[dict[str, Any]]:
+        """All plans, newest first."""
+        wanted = {"trajectory": trajectory, "rig": rig}
+        return await self._call("GET", "/plans", params={k: v for k, v in wanted.items() if v is not None})
+
+    async def session(self, rig: str) -> dict[str, Any]:
+        """The session as of now."""
+        return await self._call("GET", f"/rigs/{quote(rig)}/session")
+
+    async def take_lease(self, rig: str, action: str = "take") -> dict[str, Any]:
+        """Take (or takeover, request, renew) the lease; commands carry it from here on."""
+        held = await self._call("POST", f"/rigs/{quote(rig)}/lease", json={"action": action})
+        if held["holder"] == self.name and held["epoch"] != self._epoch:
+            self._epoch, self._sequence = held["epoch"], held["sequence"]
+        return held
+
+    async def release_lease(self, rig: str) -> dict[str, Any]:
+        """Give the lease up."""
+        return await self._call("DELETE", f"/rigs/{quote(rig)}/lease")
+
+    async def command(self, rig: str, command: str, **args: Any) -> dict[str, Any]:
+        """Command the session under the lease."""
+        self._sequence += 1
+        lease = {"epoch": self._epoch, "sequence": self._sequence}
+        body = {"command": command, "args": args, "lease": lease}
+        return await self._call("POST", f"/rigs/{quote(rig)}/commands", json=body)
+
+    async def stop(self, rig: str) -> dict[str, Any]:
+        """Brake inside the limits; needs no lease."""
+        return await self._call("POST", f"/rigs/{quote(rig)}/stop")
+
+    async def estop(self, rig: str) -> dict[str, Any]:
+        """Brake as fast as the limits allow; needs no lease."""
+        return await self._call("POST", f"/rigs/{quote(rig)}/estop")
+
+    async def wait_state(self, rig: str, *states: str) -> dict[str, Any]:
+        """Follow the session until it is in one of `states`; returns it then."""
+        async with self.stream(rig, topics=["session"]) as socket:
+            async for text in socket:
+                message = json.loads(text)
+                session: dict[str, Any] | None = message.get("session")
+                if session is not None and session["state"] in states:
+                    return session
+        raise ClientError(f"the stream of {rig} ended before the session was {' or '.join(states)}")
+
+    @asynccontextmanager
+    async def stream(self, rig: str, **subscription: Any) -> AsyncIterator[ClientConnection]:
+        """The rig's stream, subscribed; the first message is the server's hello."""
+        url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/stream"
+        async with connect(url, proxy=None, max_size=None) as socket:
+            await socket.send(json.dumps({"type": "subscribe"} | subscription))
+            yield socket
+
+    async def _call(self, method: str, path: str, **content: Any) -> Any:
+        try:
+            response = await self._http.request(method, path, **content)
+        except httpx.HTTPError as error:
+            raise ClientError(f"{self.url} does not answer: {error or type(error).__name__}") from error
+        if response.is_success:
+            return response.json() if response.content else None
+        try:
+            problem = response.json()
+        except ValueError:
+            problem = {}
+        raise ClientError(problem.get("detail") or response.reason_phrase, response.status_code, problem)
