@@ -1,0 +1,82 @@
+"""What the guide says, against what is there."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from server.settings import Settings
+from server.store.options import method_names
+from server.store.rig_file import read_rig
+from server.store.trajectory import QUATERNION, Convention
+from solver.methods import METHODS
+from solver.rig import FRAMES, Geometry, builtin_rigs
+
+ROOT = Path(__file__).parents[2]
+GUIDE = ROOT / "docs" / "guide"
+PAGES = sorted([*GUIDE.glob("*.md"), *(ROOT / "examples").rglob("*.md")])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_and_paths_lead_somewhere(page: Path) -> None:
+    text = page.read_text()
+    for target in re.findall(r"\]\(([^)#]+)\)", text):
+        if not target.startswith("https://"):
+            assert (page.parent / target).exists(), target
+    for path in re.findall(r"`((?:examples|docker|tools|docs|server|solver)/[\w./]+)`", text):
+        assert (ROOT / path).exists(), path
+
+
+def test_index_has_every_page() -> None:
+    linked = set(re.findall(r"\]\((\w+\.md)\)", (GUIDE / "index.md").read_text()))
+    assert linked >= {page.name for page in GUIDE.glob("*.md")} - {"index.md"} - {"drivers.md"}
+
+
+def test_rig_file_of_the_guide_is_read_as_told(tmp_path: Path) -> None:
+    block = re.search(r"```toml\n(.*?)```", (GUIDE / "rigs.md").read_text(), re.DOTALL)
+    assert block is not None
+    path = tmp_path / "bench.toml"
+    path.write_text(block[1])
+    entry = read_rig(path)
+    assert entry.rig.name == "bench-3"
+    assert entry.rig.geometry == Geometry.VERTICAL_4
+    assert entry.payload.size_m == (0.3, 0.2, 0.2)
+
+
+def test_rigs_page_has_the_built_in_limits_and_geometries() -> None:
+    text = (GUIDE / "rigs.md").read_text()
+    letters = "xyz"
+    for geometry in Geometry:
+        row = next(line for line in text.splitlines() if line.startswith(f"| `{geometry}` |"))
+        cells = [cell.strip()[:1] for cell in row.split("|")[2:6]]
+        assert cells == [letters[axis] if axis >= 0 else "" for axis in geometry.axes]
+    rig = builtin_rigs()["vertical-4"]
+    for words, limits in (("rate, deg/s", rig.max_rate), ("acceleration, deg/s^2", rig.max_acceleration)):
+        row = next(line for line in text.splitlines() if line.startswith(f"| {words} |"))
+        assert [float(cell) for cell in row.split("|")[2:6]] == pytest.approx([x * 57.29577951308232 for x in limits])
+    for name in builtin_rigs():
+        assert f"`{name}`" in text
+
+
+def test_methods_table_is_the_registry() -> None:
+    text = (GUIDE / "solver.md").read_text()
+    rows = dict(re.findall(r"^\| `(\w+)` \|.*\| (yes|no) \|$", text, re.MULTILINE))
+    assert set(rows) == set(method_names())
+    for name, method in METHODS.items():
+        assert rows[name] == ("yes" if method.claims_limits else "no"), name
+
+
+def test_formats_name_every_column() -> None:
+    text = (GUIDE / "formats.md").read_text()
+    for convention in Convention:
+        assert f"| `{convention}`" in text
+        assert ", ".join(convention.euler) in text
+    assert ", ".join(QUATERNION) in text
+    for frame in FRAMES:
+        assert f"{frame}_deg" in text
+
+
+def test_settings_table_is_the_settings() -> None:
+    text = (GUIDE / "deployment.md").read_text()
+    table = set(re.findall(r"`(FULLPOSE_[A-Z_]+)`", text))
+    assert {f"FULLPOSE_{name.upper()}" for name in Settings.model_fields} == table
