@@ -149,8 +149,8 @@ class SessionMachine:
 
     def event(self, event: Event) -> tuple[Action, ...]:
         """Report what happened: returns the orders, none where the state has no use for it."""
-        if event is Event.AT_REST:
-            self.moving = False
+        if event is Event.AT_REST and self.state in table.LATCHED:
+            self.moving = False  # elsewhere the rows say what rest means
         if event is Event.LINK_LOST:
             # A rig without link is out of our hands: its drive brakes by itself.
             self.linked = self.moving = False
