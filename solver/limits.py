@@ -44,11 +44,10 @@ def limit_table(rig: Rig) -> Array:
 def approach_rate(room: float, deceleration: float, h: float) -> float:
     """The highest rate over an interval `h` [s] after which `room` still suffices to brake [rad/s].
 
-    room [rad], deceleration [rad/s^2] may be infinite.
+    room [rad], deceleration [rad/s^2] may be infinite. Less than no room: the rate that goes back, so that tolerances
+    do not add up from sample to sample.
     """
-    if room <= 0.0:
-        return 0.0
-    if math.isinf(deceleration):
+    if room <= 0.0 or math.isinf(deceleration):
         return room / h
     speed = math.sqrt(2.0 * deceleration * room)
     if speed >= deceleration * h:

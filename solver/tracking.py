@@ -164,6 +164,21 @@ def binding_code(binding: int, lo_code: Codes, hi_code: Codes) -> int:
 
 
 @kernel
+def outermost_code(x: Array, lo: Array, hi: Array, lo_code: Codes, hi_code: Codes) -> int:
+    """The `limited_code` of the bound that x (4,) is farthest beyond."""
+    farthest = -np.inf
+    code = int(hi_code[0])
+    for i in range(4):
+        if lo[i] - x[i] > farthest:
+            farthest = lo[i] - x[i]
+            code = int(lo_code[i])
+        if x[i] - hi[i] > farthest:
+            farthest = x[i] - hi[i]
+            code = int(hi_code[i])
+    return code
+
+
+@kernel
 def give_way(
     axes: NDArray[np.int64],
     table: Array,
@@ -227,16 +242,17 @@ def finish(
     slides = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
     code = EXACT
     if slides == 0:
+        missed = outermost_code(work[POSE], work[LO], work[HI], lo_code, hi_code)
         code = give_way(axes, table, d, G, J, e, F, work, A, lo_code, hi_code)
+        if code == EXACT:
+            code = missed  # next to the singularity the frames may be free to move and yet not get there
         # The nearest pose may be exact after all, where it was only the way to it that missed the box.
         slides = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
         if slides == 0:
             for i in range(4):
                 work[POSE, i] = work[GUESS, i]
     if slides > 0:
-        code = EXACT
-    if code == EXACT and not (slides > 0 and on_target):
-        code = int(state[CODE])  # on the way back: what made it leave
+        code = EXACT if on_target else int(state[CODE])  # on the way back: what made it leave
     return slides, code
 
 

@@ -95,6 +95,20 @@ class AlmOptions:
 # Rows of the multipliers' work array (MULTIPLIER_ROWS, 5): lambda, mu of both sides, K with b as its last column
 EQUALITY, LOWER, UPPER, SYSTEM = 0, 1, 2, 3
 MULTIPLIER_ROWS = 7
+MOST_CHANGES = 5  # of the active bounds between two updates of the multipliers
+
+
+@kernel
+def active_bounds(room: Array, r: float, lo: Array, hi: Array, s: Array) -> int:
+    """Base 3, a digit a frame: no bound's term in M counts at s, the lower one's does (1), the upper one's (2)."""
+    active = 0
+    for i in range(3, -1, -1):
+        active *= 3
+        if room[UPPER, i] + r * (s[i] - hi[i]) > 0.0:
+            active += 2
+        elif room[LOWER, i] + r * (lo[i] - s[i]) > 0.0:
+            active += 1
+    return active
 
 
 @kernel
@@ -116,7 +130,10 @@ def multiplier_step(
         room[UPPER, i] = 0.0
     for i in range(4):
         s[i] = 0.0
+    active = active_bounds(room, r, lo, hi, s)
+    changes = 0
     for iteration in range(1, int(tuning[4]) + 1):
+        rest = active
         for i in range(4):
             b[i] = weight[i] * g[i]
             for k in range(3):
@@ -124,17 +141,24 @@ def multiplier_step(
             for j in range(i + 1):
                 K[i, j] = r * (J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j])
             K[i, i] += weight[i]
-            # A bound counts where its term in M is not zero at the present iterate.
-            if room[UPPER, i] + r * (s[i] - hi[i]) > 0.0:
-                K[i, i] += r
-                b[i] += r * hi[i] - room[UPPER, i]
-            elif room[LOWER, i] + r * (lo[i] - s[i]) > 0.0:
+            if rest % 3 == 1:
                 K[i, i] += r
                 b[i] += r * lo[i] + room[LOWER, i]
+            elif rest % 3 == 2:
+                K[i, i] += r
+                b[i] += r * hi[i] - room[UPPER, i]
+            rest //= 3
         if not solve_symmetric(K, b, 4):
             return -iteration
         for i in range(4):
             s[i] = b[i]
+        # Multipliers answer for a minimum of M only where the bounds reckoned with are those that count there.
+        before = active
+        active = active_bounds(room, r, lo, hi, s)
+        if active != before and changes < MOST_CHANGES:
+            changes += 1
+            continue
+        changes = 0
         worst = 0.0
         for k in range(3):
             h = J[k, 0] * s[0] + J[k, 1] * s[1] + J[k, 2] * s[2] + J[k, 3] * s[3] - e[k]
@@ -150,6 +174,7 @@ def multiplier_step(
         if worst <= residual:
             return iteration
         r = min(r * tuning[1], tuning[2])
+        active = active_bounds(room, r, lo, hi, s)
     return -int(tuning[4])
 
 
