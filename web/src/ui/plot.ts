@@ -33,7 +33,7 @@ export function axis(colours: Ink, look: AxisLook = {}): uPlot.Axis {
     gap: 4,
     grid: { stroke: colours.grid, width: 1 },
     ticks: { show: false },
-    space: look.space ?? 34,
+    space: look.space ?? 20,
   };
   if (look.size !== undefined) made.size = look.size;
   const splits = look.splits;
@@ -71,13 +71,9 @@ export function limitBands(limits: () => Range | null, colours: Ink): uPlot.Plug
   };
 }
 
-const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-
-/** 1e-9 as 10⁻⁹. */
+/** 1e-9 as "1e−9", as the console writes small numbers. */
 export function powerOfTen(value: number): string {
-  const exponent = Math.round(Math.log10(value));
-  const digits = [...String(Math.abs(exponent))].map((digit) => SUPERSCRIPTS[Number(digit)]).join("");
-  return `10${exponent < 0 ? "⁻" : ""}${digits}`;
+  return value.toExponential(0).replace("-", "−").replace("+", "");
 }
 
 /** Ticks of a log axis: every fourth power of ten from `low` to `high`. */

@@ -1,0 +1,98 @@
+import { describe, expect, it } from "vitest";
+import contract from "../../../docs/openapi.json";
+import { COMMANDS, nextStep, recoveryStep, verdict, type Circumstances } from "./commands";
+
+const ARMED: Circumstances = {
+  state: "armed",
+  allowed: ["start", "move", "home", "disarm", "acknowledge", "load", "hold", "reset"],
+  freshness: "fresh",
+  leased: true,
+  plan: true,
+  unacknowledged: 0,
+  busy: false,
+};
+const NOTHING: Circumstances = {
+  state: null,
+  allowed: [],
+  freshness: "stale",
+  leased: false,
+  plan: false,
+  unacknowledged: 3,
+  busy: true,
+};
+
+const enabled = (command: string, now: Partial<Circumstances>): boolean => verdict(command, { ...ARMED, ...now }).enabled;
+
+describe("stop and E-stop", () => {
+  it.each(["stop", "estop"])("%s may always be given", (command) => {
+    expect(verdict(command, NOTHING)).toEqual({ enabled: true });
+  });
+});
+
+describe("a command", () => {
+  it("needs the session to allow it", () => {
+    expect(enabled("start", {})).toBe(true);
+    expect(verdict("resume", ARMED)).toEqual({ enabled: false, why: "Not allowed while armed" });
+  });
+
+  it("needs the lease", () => {
+    expect(verdict("start", { ...ARMED, leased: false })).toEqual({ enabled: false, why: "Take control first" });
+  });
+
+  it("waits for the one before", () => {
+    expect(enabled("start", { busy: true })).toBe(false);
+  });
+
+  it.each(["arm", "start", "resume", "move", "home"])("that moves the rig is refused on stale data: %s", (command) => {
+    const now = { allowed: [command] };
+    expect(enabled(command, now)).toBe(true);
+    expect(enabled(command, { ...now, freshness: "late" })).toBe(true);
+    expect(enabled(command, { ...now, freshness: "stale" })).toBe(false);
+  });
+
+  it.each(["hold", "disarm", "connect", "unload"])("that calms the rig may be given on stale data: %s", (command) => {
+    expect(enabled(command, { allowed: [command], freshness: "stale" })).toBe(true);
+  });
+
+  it("unknown to the console counts as motion", () => {
+    expect(enabled("pirouette", { allowed: ["pirouette"], freshness: "stale" })).toBe(false);
+  });
+});
+
+it("load needs a plan that can be flown", () => {
+  expect(enabled("load", {})).toBe(true);
+  expect(enabled("load", { plan: false })).toBe(false);
+});
+
+it("acknowledge needs an alarm, reset needs none to be waiting", () => {
+  expect(enabled("acknowledge", {})).toBe(false);
+  expect(enabled("acknowledge", { unacknowledged: 1 })).toBe(true);
+  expect(enabled("reset", {})).toBe(true);
+  expect(enabled("reset", { unacknowledged: 1 })).toBe(false);
+});
+
+it("the main button follows the run, and the way back from a trip", () => {
+  expect(["disconnected", "idle", "ready", "armed", "running", "held"].map(nextStep)).toEqual([
+    "connect",
+    "load",
+    "arm",
+    "start",
+    "hold",
+    "resume",
+  ]);
+  expect(nextStep("stopping")).toBeNull();
+  expect(nextStep(null)).toBeNull();
+  expect(recoveryStep("faulted", 2)).toBe("acknowledge");
+  expect(recoveryStep("estopped", 0)).toBe("reset");
+  expect(recoveryStep("running", 2)).toBeNull();
+});
+
+it("every button is a command of the contract", () => {
+  const known = Object.values(contract.components.schemas).flatMap((schema) =>
+    "properties" in schema && "command" in schema.properties && "const" in schema.properties.command
+      ? [schema.properties.command.const as string]
+      : [],
+  );
+  expect(known).toContain("estop");
+  for (const { name } of COMMANDS) expect(known).toContain(name);
+});

@@ -1,0 +1,31 @@
+import { expect, it } from "vitest";
+import { bytes, clock, duration, fixed, integer, MISSING, scientific } from "./format";
+
+it("fixed: a real minus, no negative zero, a dash for what is missing", () => {
+  expect(fixed(-12.3456, 3)).toBe("−12.346");
+  expect(fixed(-0.0001, 2)).toBe("0.00");
+  expect([null, undefined, NaN, Infinity].map((value) => fixed(value, 2))).toEqual([MISSING, MISSING, MISSING, MISSING]);
+});
+
+it("scientific: an exact zero is told from a missing value", () => {
+  expect(scientific(3.24e-13)).toBe("3.2e−13");
+  expect(scientific(12)).toBe("1.2e1");
+  expect(scientific(0)).toBe("0");
+  expect(scientific(NaN)).toBe(MISSING);
+});
+
+it("duration picks its unit", () => {
+  expect([0.25, 3.14, 42.4, 1500, 61_000, 150_000].map(duration)).toEqual(["250 µs", "3.1 ms", "42 ms", "1.50 s", "61.0 s", "3 min"]);
+  expect(duration(null)).toBe(MISSING);
+});
+
+it("clock counts minutes and goes negative in the lead-in", () => {
+  expect([0, 3.214, 75.5, 59.999, -0.8].map(clock)).toEqual(["0:00.00", "0:03.21", "1:15.50", "0:59.99", "−0:00.80"]);
+  expect(clock(NaN)).toBe(MISSING);
+});
+
+it("bytes and integers", () => {
+  expect([12, 1234, 78_100, 4_812_332, 93e9].map(bytes)).toEqual(["12 B", "1.2 kB", "78 kB", "4.8 MB", "93.0 GB"]);
+  expect(integer(14001)).toBe("14,001");
+  expect(integer(null)).toBe(MISSING);
+});
