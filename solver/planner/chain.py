@@ -27,13 +27,12 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Avoid:
-    """A place that a chain should stay away from: around `position` (4,) [rad] of the stages first..last."""
+    """A place that a chain should stay away from: within `radius` [rad] of `angles` (k, 4) [rad] at `time` (k,) [s]."""
 
-    first: int
-    last: int
-    position: Array  # (last - first + 1, 4) [rad]
-    radius: float  # [rad]
-    cost: float  # at the centre, as if so many seconds at every limit
+    time: Array
+    angles: Array
+    radius: float
+    cost: float  # [1/s] at the centre
 
 
 @dataclass(frozen=True)
@@ -197,8 +196,8 @@ def _node_costs(
                 gap -= TURN * np.rint(gap / TURN)
             total += home_cost * gap * gap
         if measure[i] < margin:
-            short = margin / measure[i] - 1.0
-            total += rise * min(short, 50.0)
+            short = 1.0 - measure[i] / margin
+            total += rise * short * short
         out[i] = total
 
 
@@ -272,8 +271,8 @@ class Programme:
             o.singularity_margin * self.margin_gain, o.singularity_cost * self.margin_gain, cost,
         )  # fmt: skip
         for place in self.avoid:
-            if place.first <= stage <= place.last:
-                gap = position - place.position[stage - place.first]
+            if place.time[0] <= self.time[stage] <= place.time[-1]:
+                gap = position - place.angles[int(np.searchsorted(place.time, self.time[stage]))]
                 gap -= TURN * np.rint(gap / TURN)
                 near = np.maximum(0.0, 1.0 - np.abs(gap).max(axis=1) / place.radius)
                 cost += place.cost * near

@@ -16,13 +16,16 @@ from solver.charts import project
 from solver.kinematics import jacobian, payload_attitude, rotation_error
 
 Array = NDArray[np.float64]
+DAMPING = 1e-14  # least damping of the projection: rounding may move a singular pose by 1e-9 rad, no more
+POLISHED = 1e-10  # [rad] the last digits; a chart that moves a pose by more is next to its fold
 
 
 @kernel
 def closest(axes: NDArray[np.int64], C: Array, d: Array) -> float:
-    """d <- the exact pose next to d by Newton steps of least norm; returns the error left [rad], nan where singular.
+    """d <- the exact pose next to d by Newton steps of least norm; returns the error left [rad].
 
-    C (3, 3), d (4,) [rad] in place.
+    C (3, 3), d (4,) [rad] in place. Damped by the square of the error (Levenberg-Marquardt), which costs no order of
+    convergence and lets a path through the singularity that does not ask for the lost direction.
     """
     F = np.empty((3, 3))
     J = np.empty((3, 4))
@@ -34,7 +37,8 @@ def closest(axes: NDArray[np.int64], C: Array, d: Array) -> float:
         if size < 4e-16 or (iteration > 2 and size < 4e-15):
             break
         jacobian(axes, d, J)
-        # (J J^T) y = -e, 3x3 symmetric, by cofactors
+        # (J J^T + damping) y = -e, 3x3 symmetric, by cofactors
+        damping = max(DAMPING, 0.1 * size * size)
         a = b = c = p = q = r = 0.0
         for k in range(4):
             a += J[0, k] * J[0, k]
@@ -43,12 +47,13 @@ def closest(axes: NDArray[np.int64], C: Array, d: Array) -> float:
             p += J[0, k] * J[1, k]
             q += J[0, k] * J[2, k]
             r += J[1, k] * J[2, k]
+        a += damping
+        b += damping
+        c += damping
         c00 = b * c - r * r
         c01 = q * r - p * c
         c02 = p * r - q * b
         det = a * c00 + p * c01 + q * c02
-        if not det > 1e-12:
-            return np.nan
         c11 = a * c - q * q
         c12 = p * q - a * r
         c22 = a * b - p * p
@@ -85,14 +90,25 @@ def closest_all(axes: NDArray[np.int64], horizontal: bool, attitude: Array, d: A
 
 @kernel
 def polish(horizontal: bool, attitude: Array, d: Array) -> None:
-    """The last digits: every row through the chart that is farther from its fold. In place."""
+    """The last digits: every row through the chart that is farther from its fold, unless that fold is upon it. In place."""
+    exact = np.empty(4)
     for k in range(d.shape[0]):
-        project(horizontal, attitude[k], d[k], d[k])
+        project(horizontal, attitude[k], d[k], exact)
+        near = True
+        for i in range(4):
+            if abs(exact[i] - d[k, i]) > POLISHED:
+                near = False
+        if near:
+            d[k] = exact
 
 
 @kernel
 def null_vectors(horizontal: bool, d: Array, n: Array) -> None:
-    """n <- unit null vectors, (c3, -s2 s3, -c2 c3, -s2) scaled; continuous in d. d, n (k, 4). Zero where singular."""
+    """n <- unit null vectors, (c3, -s2 s3, -c2 c3, -s2) scaled. d, n (k, 4).
+
+    The vector vanishes at the singularity and comes out of it turned round: along a path that runs through, its
+    direction is continued, and kept where it is not determined.
+    """
     for k in range(d.shape[0]):
         s2 = math.sin(d[k, 1])
         c2 = math.cos(d[k, 1])
@@ -103,8 +119,16 @@ def null_vectors(horizontal: bool, d: Array, n: Array) -> None:
         n[k, 2] = -c2 * c3
         n[k, 3] = s2 if horizontal else -s2
         size = math.sqrt(c3 * c3 + s2 * s2 * s3 * s3 + c2 * c2 * c3 * c3 + s2 * s2)
+        if size < 1e-7 and k > 0:
+            n[k] = n[k - 1]
+            continue
+        dot = 0.0
         for i in range(4):
-            n[k, i] = n[k, i] / size if size > 1e-12 else 0.0
+            n[k, i] = n[k, i] / size if size > 0.0 else 0.0
+            dot += n[k, i] * n[k - 1, i] if k > 0 else 0.0
+        if dot < 0.0:
+            for i in range(4):
+                n[k, i] = -n[k, i]
 
 
 def smoothed(y: Array, stiffness: float) -> Array:

@@ -15,7 +15,7 @@ class PlanOptions:
     knot: float = 0.025  # [s] between the knots of the refinement's spline
     fine_grid: float = 0.25 * DEG  # [rad] of the grid that a verdict of "infeasible" rests on
     singularity_margin: float = 0.05  # sin^2 d2 + cos^2 d3 below which the cost rises
-    singularity_cost: float = 2.0  # [1/s] of that rise, beside rates squared as shares of their limits
+    singularity_cost: float = 4.0  # [1/s] at the singularity itself, beside rates squared as shares of their limits
     acceleration_cost: float = 0.5  # accelerations squared as shares of their limits, beside rates
     home_cost: float = 1e-3  # (angle - home)^2 [1/rad^2/s]: decides where nothing else does
     reserve: float = 1e-3  # share of a limit that the refinement leaves unused, for what falls between its rows

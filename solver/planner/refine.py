@@ -21,6 +21,7 @@ from solver.rig import Rig
 
 Array = NDArray[np.float64]
 MET = 1e-7  # of a limit: over it by less counts as inside
+OVERRUN = 1e3  # merit of a limit exceeded by its whole; costs are about one a second at most
 NEAR = 0.6  # share of a limit from which its rows are in the programme at once
 ROOM = 0.8  # of v^2 / a: the way that a lead needs between rest and rate v
 SHORTEST = 3.0  # samples: a lead has four at least, of half the rate on average, and the rate it starts from may rise
@@ -93,8 +94,8 @@ def refine(
     over = np.empty((n, 3))
     whose = np.empty((n, 3), np.int8)
     trust = options.trust
-    best: Refined | None = None
-    best_cost = np.inf
+    best = Refined(d, *worst(time, d, true_limits, judged), 0)
+    best_cost = path_cost(time, d, rig, options, stride) + OVERRUN * max(0.0, best.over)
     count = 0
     for count in range(1, (iterations or options.iterations) + 1):
         problem = _programme(time, d, rig, limits, options, basis, stride, flags, trust, pinned, start, start_rate, ends)
@@ -111,19 +112,17 @@ def refine(
         over_limits(time, moved, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
         flags |= (over > 1e-6).astype(np.uint8)
         cost = path_cost(time, moved, rig, options, stride)
-        merit = cost + 1e3 * max(0.0, result.over) + 1e3 * fallen
-        reference = best_cost
+        merit = cost + OVERRUN * max(0.0, result.over) + OVERRUN * fallen
         if merit < best_cost:
-            better = best is None or best_cost - merit > 1e-3 * abs(best_cost)
+            better = best_cost - merit > 1e-3 * best_cost
             best, best_cost = result, merit
             d = moved
             if result.over <= MET and (shift < 1e-3 or not better):
                 break
         else:
             trust *= 0.3
-        if shift < 1e-7 or trust < 1e-7 or (count > 3 and merit < reference and result.over > 1e3):
+        if shift < 1e-7 or trust < 1e-7:
             break
-    assert best is not None
     return Refined(best.angles, best.over, best.sample, best.frame, best.limit, count)
 
 
@@ -240,9 +239,9 @@ def path_cost(time: Array, d: Array, rig: Rig, options: PlanOptions, stride: int
         total += float(np.sum((np.diff(rate, axis=0) / mid[:, None]) ** 2 * acceleration_weight * mid[:, None]))
     some = d[::stride]
     span = np.gradient(time[::stride]) if len(some) > 1 else np.ones(1)
-    measure = np.maximum(np.sin(some[:, 1]) ** 2 + np.cos(some[:, 2]) ** 2, 1e-4)
-    short = np.maximum(0.0, options.singularity_margin / measure - 1.0)
-    total += float(np.sum(options.singularity_cost * short * span))
+    measure = np.sin(some[:, 1]) ** 2 + np.cos(some[:, 2]) ** 2
+    short = np.maximum(0.0, 1.0 - measure / options.singularity_margin)
+    total += float(np.sum(options.singularity_cost * short**2 * span))
     home = _home_cost(rig, options)
     if home:
         total += float(np.sum(home * (some - rig.home) ** 2 * span[:, None]))

@@ -149,11 +149,11 @@ def cost_bands(
                         H[origin + a, b - a] += 2.0 * weight * dt * row[a] * row[b]
         s2 = math.sin(d[k, 1])
         c3 = math.cos(d[k, 2])
-        measure = max(s2 * s2 + c3 * c3, 1e-4)
-        if measure < margin:
+        short = 1.0 - (s2 * s2 + c3 * c3) / margin
+        if short > 0.0:
             slope = 2.0 * s2 * math.cos(d[k, 1]) * n[k, 1] - 2.0 * c3 * math.sin(d[k, 2]) * n[k, 2]
-            down = -rise * margin / (measure * measure)
-            bend = 2.0 * rise * margin / (measure * measure * measure)
+            down = -2.0 * rise * short / margin
+            bend = 2.0 * rise / (margin * margin)
             for a in range(values.shape[1]):
                 va = values[k, a] * slope
                 g[first[k] + a] += dt * down * va

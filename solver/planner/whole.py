@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 EXCESS = 100.0  # cost of going over a rate limit by its whole, for a flight without a chain
 AVOID_RADIUS = math.radians(30.0)
+AVOID_COST = 5.0  # [1/s], beside rates squared as shares of their limits
 AVOID_TIME = 0.4  # [s] before and after
 
 
@@ -56,6 +57,7 @@ class _Search:
         self.start, self.start_rate = start, start_rate
         self.counted = np.zeros(4, np.bool_)
         self.avoid: list[Avoid] = []
+        self.margin_gain = 1.0
         self.chains = 0
         self.samples = stage_samples(time, options.stage)
 
@@ -68,6 +70,7 @@ class _Search:
                 lattice(self.rig, grid, self.counted, slack), self.options, slack,
             )  # fmt: skip
             programme.avoid = self.avoid
+            programme.margin_gain = self.margin_gain
             programme.stretch, programme.excess = stretch, excess
             chain = programme.run(self.start, self._report(0.0, 0.5))
             if not chain.found:
@@ -95,12 +98,29 @@ class _Search:
     def steer_away(self, path: Path) -> None:
         """Make the places where a path failed dear to the chains to come."""
         for failure in path.failures:
-            around = self.time[self.samples] - self.time[failure.sample]
-            stages = np.flatnonzero(np.abs(around) <= max(AVOID_TIME, self.options.stage))
-            if stages.size:
-                self.avoid.append(
-                    Avoid(int(stages[0]), int(stages[-1]), path.angles[self.samples[stages]], AVOID_RADIUS, 5.0)
-                )
+            reach = max(AVOID_TIME, self.options.stage)
+            first = float(self.time[failure.sample]) - reach
+            part = slice(*np.searchsorted(self.time, (first, first + 2.0 * reach)))
+            self.avoid.append(Avoid(self.time[part], path.angles[part].copy(), AVOID_RADIUS, AVOID_COST))
+
+    def alternative(self, attempt: int, grid: float) -> Chain:
+        """Another chain, after some have failed.
+
+        First without a price on the singularity: a flight that must pass through it is better off going straight.
+        Then away from the places that failed; then on a grid twice as fine with stages half as far apart; then with
+        four times the price on the singularity; then as the second, ever farther away.
+        """
+        avoid = self.avoid
+        self.margin_gain = 0.0 if attempt == 1 else 4.0 if attempt == 4 else 1.0
+        if attempt in (1, 4):
+            self.avoid = []
+        if attempt == 3:
+            self.samples = stage_samples(self.time, 0.5 * self.options.stage)
+            self.avoid = []
+            grid = 0.5 * grid
+        chain = self.chain(grid)
+        self.avoid = avoid
+        return chain
 
     def _report(self, begin: float, share: float) -> Progress | None:
         if self.progress is None:
@@ -180,19 +200,18 @@ def _fly(search: _Search) -> _Flown:
         return _Flown(effort.angles, np.zeros(n, np.int32), effort.limited, LIMITS[chain.limit], blocking, grid)
     best: tuple[float, Path] | None = None
     for attempt in range(options.alternatives + 1):
+        if attempt > 0:
+            following = search.alternative(attempt, grid)
+            if not following.found:
+                continue
+            chain = following
         path = search.refine(chain)
         over = overrun(time, path.angles, rig)
         if best is None or over[0] < best[0]:
             best = over[0], path
         if over[0] <= MET:
             return _Flown(path.angles, path.iterations, none, "checked", None, grid)
-        if attempt == options.alternatives:
-            break
         search.steer_away(path)
-        following = search.chain(grid)
-        if not following.found:
-            break
-        chain = following
     assert best is not None
     path = best[1]
     _, sample, frame, limit = overrun(time, path.angles, rig)
