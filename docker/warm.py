@@ -1,14 +1,18 @@
-"""Runs every method once on every rig it applies to, so that Numba's compiled kernels are in the image's cache."""
+"""Runs every method on every rig, and the rigs' loop, so that Numba's kernels are in the image's cache."""
 
 import sys
 import time
 from importlib.resources import as_file, files
+from pathlib import Path
 
 import numpy as np
 
+from server.drives import registry
+from server.runtime import warm
+from server.runtime.config import RigConfig
+from server.store.options import method_names
 from solver.attitude import dcm_from_quaternion, quaternion_from_ned
 from solver.errors import MethodError
-from solver.methods import METHODS
 from solver.resample import resample
 from solver.rig import builtin_rigs
 from solver.solve import solve
@@ -21,7 +25,7 @@ def main() -> None:
         rows = np.loadtxt(path, delimiter=",", skiprows=1, max_rows=201)
     flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:]), 1000.0)
     attitude = dcm_from_quaternion(flight.q)
-    for method in METHODS:
+    for method in method_names():
         started, flown = time.perf_counter(), []
         for name, rig in builtin_rigs().items():
             try:
@@ -33,6 +37,15 @@ def main() -> None:
         if not flown:
             sys.exit(f"{method}: no rig flies it")
         print(f"{method}: {', '.join(flown)} in {time.perf_counter() - started:.1f} s", flush=True)  # noqa: T201
+    started = time.perf_counter()
+    for name, rig in builtin_rigs().items():
+        config = RigConfig(name, rig, directory=Path("unused"), runs=Path("unused"))  # nothing is written
+        warm.kernels(config)
+        drive = registry.make(config.drive, rig, config.rate_hz, config.drive_options)
+        drive.connect(0.0)
+        drive.read(1.0 / config.rate_hz, np.zeros(4), np.zeros(4))
+        drive.close()
+    print(f"loop and drive in {time.perf_counter() - started:.1f} s", flush=True)  # noqa: T201
 
 
 if __name__ == "__main__":

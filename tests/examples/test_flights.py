@@ -115,3 +115,19 @@ def test_demo_flight_is_flown_exactly_on_the_demo_rig() -> None:
 
 def test_demo_flight_is_the_example_loop() -> None:
     assert (ROOT / "server/demo_flights/loop.csv").read_bytes() == (FOLDER / "loop.csv").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["slow_roll", "split_s"])
+def test_rolls_need_the_planner_where_the_inner_frame_is_limited(name: str) -> None:
+    """What the flights' README says of vertical-limited."""
+    time, body = read(name)
+    time, body = time[::2], body[::2]  # 100 Hz shows it as well
+    change = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # ours from NED: north, up, east
+    attitude = change @ body.as_matrix().transpose(0, 2, 1) @ change.T
+    rig = builtin_rigs()["vertical-limited"]
+    assert solve(time, attitude, rig, method="exact").limited_samples > 0
+    planned = solve(time, attitude, rig, method="plan")
+    check = verify(time, planned.angles, rig, attitude)
+    assert planned.limited_samples == 0
+    assert check.max_matrix_error < 1e-14
+    assert not check.violations
