@@ -1,0 +1,52 @@
+"""One comparison from a flight: solved with each method, measured, reported, drawn."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from server.store.compare_page import compare_page
+from server.store.compare_report import comparison_report
+from solver.attitude import dcm_from_quaternion
+from solver.compare import compare
+from solver.resample import resample
+from solver.rig import Rig
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]  # method, done, total
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The report, JSON-ready, and the page."""
+
+    report: dict[str, Any]
+    page: str
+
+
+def make_comparison(
+    name: str,
+    at: Array,
+    q: Array,
+    rig: Rig,
+    methods: Sequence[str],
+    start: Array | None = None,
+    rate_hz: float | None = None,
+    progress: Progress | None = None,
+) -> Comparison:
+    """Compare `methods` on the flight `name`: at (n,) [s], q (n, 4) w, x, y, z reference to body; start (4,) [rad].
+
+    With `rate_hz` the flight is first brought to that rate, as a plan is; else its own samples are solved.
+    Raises `solver.errors.SolverError`.
+    """
+    note = None
+    if rate_hz is not None:
+        flight = resample(at, q, rate_hz)
+        at, q, note = flight.time, flight.q, flight.note
+    attitude = dcm_from_quaternion(q)
+    rows = compare(at, attitude, rig, methods, start=start, clock=time.perf_counter, progress=progress)
+    report = comparison_report(rows, rig, name, note)
+    return Comparison(report, compare_page(report, rows, rig, attitude))
