@@ -41,6 +41,7 @@ from solver.tracking import (
     finish,
     goal,
     new_state,
+    outermost_code,
     prepare,
     wish,
 )
@@ -179,6 +180,16 @@ def multiplier_step(
 
 
 @kernel
+def reaches(J: Array, s: Array, e: Array, residual: float) -> bool:
+    """Whether the step s (4,) makes the increment e (3,) [rad], to a thousandth of it or the residual."""
+    for k in range(3):
+        gap = J[k, 0] * s[0] + J[k, 1] * s[1] + J[k, 2] * s[2] + J[k, 3] * s[3] - e[k]
+        if abs(gap) > max(residual, 1e-3 * abs(e[k])):
+            return False
+    return True
+
+
+@kernel
 def alm_block(
     horizontal: bool,
     axes: NDArray[np.int64],
@@ -240,6 +251,8 @@ def alm_block(
                     work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
                 binding = box_least_squares(J, e, work[DAMPING], work[WISH], work[LO], work[HI], work[STEP], A)
                 code = binding_code(binding, lo_code, hi_code)
+                if code == EXACT and not reaches(J, work[STEP], e, tuning[3]):
+                    code = outermost_code(work[STEP], work[LO], work[HI], lo_code, hi_code)
             for i in range(4):
                 work[LO, i] += d[i]
                 work[HI, i] += d[i]
