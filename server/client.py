@@ -11,6 +11,7 @@ from urllib.parse import quote
 
 import httpx
 from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 API = "/api/v1"
 POLL_S = 0.1
@@ -47,17 +48,17 @@ class Client:
 
     async def health(self) -> dict[str, Any]:
         """How the server does."""
-        return await self._call("GET", "/health")
+        return await self._object("GET", "/health")
 
     async def rigs(self) -> list[dict[str, Any]]:
         """All rigs."""
-        return await self._call("GET", "/rigs")
+        return await self._array("GET", "/rigs")
 
     async def upload(self, file: Path, convention: str = "nue", name: str | None = None) -> dict[str, Any]:
         """Upload a flight; returns it as stored."""
         fields = {"convention": convention, **({} if name is None else {"name": name})}
         content = await asyncio.to_thread(file.read_bytes)
-        return await self._call("POST", "/trajectories", data=fields, files={"file": (file.name, content)})
+        return await self._object("POST", "/trajectories", data=fields, files={"file": (file.name, content)})
 
     async def plan(
         self,
@@ -69,46 +70,46 @@ class Client:
     ) -> dict[str, Any]:
         """Ask for a plan and wait until its job has ended; look at `status` and `flyable`."""
         body = {"trajectory": trajectory, "rig": rig, "method": method, "options": options or {}}
-        made = await self._call("POST", "/plans", json=body | {"start_deg": start_deg})
+        made = await self._object("POST", "/plans", json=body | {"start_deg": start_deg})
         while made["status"] in ("queued", "running"):
             await asyncio.sleep(POLL_S)
-            made = await self._call("GET", f"/plans/{made['id']}")
+            made = await self._object("GET", f"/plans/{made['id']}")
         return made
 
     async def plans(self, trajectory: str | None = None, rig: str | None = None) -> list[dict[str, Any]]:
         """All plans, newest first."""
         wanted = {"trajectory": trajectory, "rig": rig}
-        return await self._call("GET", "/plans", params={k: v for k, v in wanted.items() if v is not None})
+        return await self._array("GET", "/plans", params={k: v for k, v in wanted.items() if v is not None})
 
     async def session(self, rig: str) -> dict[str, Any]:
         """The session as of now."""
-        return await self._call("GET", f"/rigs/{quote(rig)}/session")
+        return await self._object("GET", f"/rigs/{quote(rig)}/session")
 
     async def take_lease(self, rig: str, action: str = "take") -> dict[str, Any]:
         """Take (or takeover, request, renew) the lease; commands carry it from here on."""
-        held = await self._call("POST", f"/rigs/{quote(rig)}/lease", json={"action": action})
+        held = await self._object("POST", f"/rigs/{quote(rig)}/lease", json={"action": action})
         if held["holder"] == self.name and held["epoch"] != self._epoch:
             self._epoch, self._sequence = held["epoch"], held["sequence"]
         return held
 
     async def release_lease(self, rig: str) -> dict[str, Any]:
         """Give the lease up."""
-        return await self._call("DELETE", f"/rigs/{quote(rig)}/lease")
+        return await self._object("DELETE", f"/rigs/{quote(rig)}/lease")
 
     async def command(self, rig: str, command: str, **args: Any) -> dict[str, Any]:
         """Command the session under the lease."""
         self._sequence += 1
         lease = {"epoch": self._epoch, "sequence": self._sequence}
         body = {"command": command, "args": args, "lease": lease}
-        return await self._call("POST", f"/rigs/{quote(rig)}/commands", json=body)
+        return await self._object("POST", f"/rigs/{quote(rig)}/commands", json=body)
 
     async def stop(self, rig: str) -> dict[str, Any]:
         """Brake inside the limits; needs no lease."""
-        return await self._call("POST", f"/rigs/{quote(rig)}/stop")
+        return await self._object("POST", f"/rigs/{quote(rig)}/stop")
 
     async def estop(self, rig: str) -> dict[str, Any]:
         """Brake as fast as the limits allow; needs no lease."""
-        return await self._call("POST", f"/rigs/{quote(rig)}/estop")
+        return await self._object("POST", f"/rigs/{quote(rig)}/estop")
 
     async def wait_state(self, rig: str, *states: str) -> dict[str, Any]:
         """Follow the session until it is in one of `states`; returns it then."""
@@ -124,15 +125,26 @@ class Client:
     async def stream(self, rig: str, **subscription: Any) -> AsyncIterator[ClientConnection]:
         """The rig's stream, subscribed; the first message is the server's hello."""
         url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/stream"
-        async with connect(url, proxy=None, max_size=None) as socket:
-            await socket.send(json.dumps({"type": "subscribe"} | subscription))
-            yield socket
+        try:
+            async with connect(url, proxy=None, max_size=None) as socket:
+                await socket.send(json.dumps({"type": "subscribe"} | subscription))
+                yield socket
+        except (ConnectionClosed, InvalidHandshake, OSError) as error:
+            raise ClientError(f"the stream of {rig} at {self.url} broke off: {error}") from error
+
+    async def _object(self, method: str, path: str, **content: Any) -> dict[str, Any]:
+        answer: dict[str, Any] = await self._call(method, path, **content)
+        return answer
+
+    async def _array(self, method: str, path: str, **content: Any) -> list[dict[str, Any]]:
+        answer: list[dict[str, Any]] = await self._call(method, path, **content)
+        return answer
 
     async def _call(self, method: str, path: str, **content: Any) -> Any:
         try:
             response = await self._http.request(method, path, **content)
         except httpx.HTTPError as error:
-            raise ClientError(f"{self.url} does not answer: {error or type(error).__name__}") from error
+            raise ClientError(f"{self.url} does not answer: {str(error) or type(error).__name__}") from error
         if response.is_success:
             return response.json() if response.content else None
         try:

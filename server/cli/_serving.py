@@ -15,6 +15,7 @@ import uvicorn
 
 from server.app import create_app
 from server.cli._exit import fail
+from server.client import ClientError
 from server.runtime.host import HostError
 from server.settings import Settings
 from server.store.errors import StoreError
@@ -47,8 +48,10 @@ def run(settings: Settings, ready: Ready) -> None:
     listener = bind(settings.host, settings.port)
     try:
         asyncio.run(_run(settings, listener, ready))
-    except (StoreError, HostError) as error:
-        fail(str(error), 1 if isinstance(error, HostError) else 2)
+    except StoreError as error:
+        fail(str(error))
+    except (HostError, ClientError) as error:
+        fail(str(error), 1)
 
 
 def bind(host: str, port: int) -> socket.socket:
@@ -72,7 +75,7 @@ def bind(host: str, port: int) -> socket.socket:
 def address(listener: socket.socket) -> str:
     """The URL of the console."""
     host, port = listener.getsockname()[:2]
-    if host in ("0.0.0.0", "::"):  # noqa: S104 - told to a person, not listened on
+    if host in ("0.0.0.0", "::"):
         host = "localhost"
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
 
@@ -105,9 +108,10 @@ async def _run(settings: Settings, listener: socket.socket, ready: Ready) -> Non
 async def _beside(ready: Ready, url: str, server: uvicorn.Server) -> None:
     try:
         await ready(url)
-    except BaseException:
-        server.should_exit = True
-        raise
+    except Exception:
+        if not server.should_exit:  # at the end every connection of ours breaks off too
+            server.should_exit = True
+            raise
 
 
 class _Server(uvicorn.Server):

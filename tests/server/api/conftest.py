@@ -1,0 +1,20 @@
+"""One server for a test module; its rigs are processes of their own."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.server.api.live_server import LiveServer, Operator, live_server
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
+    with live_server(tmp_path_factory.mktemp("data"), max_upload_bytes=200_000, rig_rate_hz=500.0) as live:
+        yield live
+
+
+@pytest.fixture
+def operator(server: LiveServer) -> Operator:
+    made = Operator(server)
+    made.to_idle()
+    return made

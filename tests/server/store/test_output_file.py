@@ -1,0 +1,68 @@
+"""What is written: columns, digits, and nothing at all where it goes wrong."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from server.store.errors import FileError
+from server.store.output_file import COLUMNS, check_writable, replacing, write_solution
+from solver.attitude import dcm_from_euler
+from solver.rig import builtin_rigs
+from solver.solution import Solution
+from solver.solve import solve
+
+
+def solution(n: int = 5000) -> Solution:
+    time = np.arange(n) * 1e-3
+    attitude = dcm_from_euler(0.3 * np.sin(time), 0.2 * np.sin(2 * time), 0.1 * time)
+    return solve(time, attitude, builtin_rigs()["vertical-4"], "exact")
+
+
+def test_csv_gives_back_every_bit(tmp_path: Path) -> None:
+    made = solution()
+    calls: list[tuple[int, int]] = []
+    write_solution(tmp_path / "out.csv", made, lambda done, total: calls.append((done, total)))
+    with (tmp_path / "out.csv").open(newline="") as stream:
+        rows = list(csv.reader(stream))
+    assert tuple(rows[0]) == COLUMNS
+    table = np.array(rows[1:], float)
+    np.testing.assert_array_equal(table[:, 0], made.time)
+    np.testing.assert_array_equal(table[:, 1:5], np.rad2deg(made.angles))
+    np.testing.assert_array_equal(table[:, 5], np.rad2deg(made.error))
+    assert {row[6] for row in rows[1:]} == {"0"}
+    assert calls[-1] == (5000, 5000)
+
+
+def test_parquet_has_the_same_columns(tmp_path: Path) -> None:
+    made = solution(10)
+    write_solution(tmp_path / "out.parquet", made)
+    table = pq.read_table(tmp_path / "out.parquet")
+    assert tuple(table.column_names) == COLUMNS
+    np.testing.assert_array_equal(table.column("inner_deg").to_numpy(), np.rad2deg(made.angles[:, 3]))
+
+
+def test_an_exception_leaves_the_old_file_and_nothing_beside_it(tmp_path: Path) -> None:
+    path = tmp_path / "out.csv"
+    path.write_text("old")
+
+    def interrupted() -> None:
+        with replacing(path) as draft:
+            draft.write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_place_that_cannot_be_written_is_known_before_the_work(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="folder"):
+        check_writable(tmp_path)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileError, match="place to write"):
+        check_writable(tmp_path / "file" / "out.csv")
+    check_writable(tmp_path / "new" / "deep" / "out.csv")

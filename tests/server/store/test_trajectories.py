@@ -1,0 +1,51 @@
+"""Stored flights: one address a flight, whole or not at all."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from server.store.errors import InUseError, NotFoundError
+from server.store.trajectories import TrajectoryStore
+from tests.server.store.stores import Stores
+
+FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 100},{k / 10},{k / 20},0\n" for k in range(101))
+
+
+def test_a_flight_comes_back_bit_by_bit(stores: Stores) -> None:
+    sha256 = stores.add_flight(FLIGHT)
+    time, q = stores.trajectories.arrays(sha256)
+    np.testing.assert_array_equal(time, np.arange(101) / 100)
+    assert q.shape == (101, 4)
+    row = stores.trajectories.get(sha256)
+    assert (row.samples, row.duration_s, row.uniform) == (101, 1.0, True)
+    assert row.rate_hz == pytest.approx(100.0)
+    # 0.1 deg of yaw and 0.05 deg of pitch, at right angles while roll is zero, in 10 ms.
+    assert row.peak_body_rate_deg_s == pytest.approx(np.hypot(10.0, 5.0), rel=1e-3)
+    assert (stores.folder / "trajectories" / sha256 / "source.csv").read_text() == FLIGHT
+
+
+def test_the_same_flight_is_stored_once(stores: Stores) -> None:
+    assert stores.add_flight(FLIGHT, "one") == stores.add_flight(FLIGHT.replace("\n", "\r\n"), "two")
+    assert [row.name for row in stores.trajectories.all()] == ["one"]
+
+
+def test_a_flight_that_a_plan_needs_stays(stores: Stores) -> None:
+    sha256 = stores.add_flight(FLIGHT)
+    plan = stores.add_plan(sha256)
+    with pytest.raises(InUseError):
+        stores.trajectories.remove(sha256)
+    stores.plans.finish(plan, "cancelled")
+    stores.plans.remove(plan)
+    stores.trajectories.remove(sha256)
+    with pytest.raises(NotFoundError):
+        stores.trajectories.get(sha256)
+    assert not (stores.folder / "trajectories" / sha256).exists()
+
+
+def test_what_a_crash_left_is_cleared_at_the_next_start(stores: Stores, tmp_path: Path) -> None:
+    left = tmp_path / "trajectories" / ".new-1234"
+    left.mkdir()
+    (left / "time.npy").write_bytes(b"half")
+    TrajectoryStore(stores.database, tmp_path / "trajectories")
+    assert not left.exists()
