@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { bytes, clock, duration, fixed, integer, MISSING, scientific } from "./format";
+import { bytes, clock, duration, fixed, integer, MISSING, scientific, small } from "./format";
 
 it("fixed: a real minus, no negative zero, a dash for what is missing", () => {
   expect(fixed(-12.3456, 3)).toBe("−12.346");
@@ -12,6 +12,11 @@ it("scientific: an exact zero is told from a missing value", () => {
   expect(scientific(12)).toBe("1.2e1");
   expect(scientific(0)).toBe("0");
   expect(scientific(NaN)).toBe(MISSING);
+});
+
+it("small changes its notation at a thousandth", () => {
+  expect([0.08312, 0.001, 0.00099, 5.5e-5, 0].map(small)).toEqual(["0.0831", "0.0010", "9.9e−4", "5.5e−5", "0"]);
+  expect([NaN, null, undefined].map(small)).toEqual([MISSING, MISSING, MISSING]);
 });
 
 it("duration picks its unit", () => {

@@ -16,6 +16,11 @@ export function scientific(value: number | null | undefined, digits = 1): string
   return value === 0 ? "0" : value.toExponential(digits).replace("-", MINUS).replace("+", "");
 }
 
+/** An error of everyday size in four decimals, a smaller one as a power of ten. */
+export function small(value: number | null | undefined): string {
+  return value !== null && value !== undefined && Math.abs(value) < 1e-3 ? scientific(value) : fixed(value, 4);
+}
+
 /** "850 µs", "12.3 ms", "3.42 s", "2 min". */
 export function duration(ms: number | null | undefined): string {
   if (ms === null || ms === undefined || !Number.isFinite(ms)) return MISSING;

@@ -19,11 +19,14 @@ export function ink(): Ink {
 
 export const AXIS_FONT = '11px "Inter", system-ui, sans-serif';
 
+const plain = (value: number): string => String(value).replace("-", "−");
+
 export interface AxisLook {
   size?: number;
   space?: number;
   splits?: number[];
-  values?: (splits: number[]) => (string | null)[];
+  /** Text of each tick; a tick that uPlot leaves out has none. */
+  text?: (value: number) => string | null;
 }
 
 export function axis(colours: Ink, look: AxisLook = {}): uPlot.Axis {
@@ -38,8 +41,8 @@ export function axis(colours: Ink, look: AxisLook = {}): uPlot.Axis {
   if (look.size !== undefined) made.size = look.size;
   const splits = look.splits;
   if (splits) made.splits = () => splits;
-  const values = look.values;
-  if (values) made.values = (_plot, splits) => values(splits);
+  const text = look.text ?? plain;
+  made.values = (_plot, ticks: (number | null)[]) => ticks.map((value) => (value === null ? null : text(value)));
   return made;
 }
 
