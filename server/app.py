@@ -16,7 +16,7 @@ from server.api import openapi, problems
 from server.api.console import console
 from server.api.hosts import RigHosts
 from server.api.origin import OriginGuard
-from server.api.routes import audit, health, plans, rigs, runs, sessions, solve, stream, trajectories
+from server.api.routes import audit, compare, health, plans, rigs, runs, sessions, solve, stream, trajectories
 from server.api.services import Services
 from server.plan_folder import rig_hash
 from server.runtime.config import RigConfig
@@ -24,6 +24,7 @@ from server.scene.proxy import router as scene_router
 from server.scene.scenes import SceneServer
 from server.settings import Settings
 from server.store.audit import AuditLog
+from server.store.comparisons import Comparisons
 from server.store.database import Database
 from server.store.errors import StoreError
 from server.store.plan_queue import PlanQueue
@@ -63,7 +64,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.scenes = SceneServer()
     problems.install(app)
-    for module in (rigs, trajectories, plans, sessions, stream, solve, runs, audit, health):
+    for module in (rigs, trajectories, plans, compare, sessions, stream, solve, runs, audit, health):
         app.include_router(module.router, prefix=API)
     app.include_router(scene_router, dependencies=[Depends(_scene)])
     app.mount("/", console())
@@ -90,6 +91,7 @@ def _lifespan(settings: Settings) -> Callable[[FastAPI], Any]:
             stack.callback(app.state.scenes.close)
             await services.queue.start()
             stack.push_async_callback(services.queue.close)
+            stack.push_async_callback(services.comparisons.close)
             stack.push_async_callback(services.hosts.close, stop_rigs=settings.stop_rigs_on_exit)
             await services.hosts.adopt()
             app.state.services = services
@@ -137,6 +139,7 @@ def _build(settings: Settings, folder: Path, database: Database) -> Services:
         trajectories=trajectory_store,
         plans=plan_store,
         queue=PlanQueue(plan_store, request),
+        comparisons=Comparisons(folder / "comparisons"),
         audit=AuditLog(database),
         hosts=RigHosts(rig_store, config, directory),
     )

@@ -13,6 +13,7 @@ from server.api.hosts import RigHosts
 from server.api.problems import ApiError
 from server.settings import Settings
 from server.store.audit import AuditLog
+from server.store.comparisons import Comparisons
 from server.store.database import Database
 from server.store.plan_queue import PlanQueue
 from server.store.plans import PlanStore
@@ -30,6 +31,7 @@ class Services:
     trajectories: TrajectoryStore
     plans: PlanStore
     queue: PlanQueue
+    comparisons: Comparisons
     audit: AuditLog
     hosts: RigHosts
     started: float = field(default_factory=time.time)

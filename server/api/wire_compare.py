@@ -1,0 +1,97 @@
+"""Comparisons on the wire."""
+
+from datetime import datetime
+
+from pydantic import Field
+
+from server.api.wire import Four, FrameName, LimitName, Name, Sha256, Wire
+from server.api.wire_plans import (
+    BlockingOut,
+    IterationsOut,
+    JobErrorOut,
+    JobStatus,
+    PeaksOut,
+    ProgressOut,
+    StepTimeOut,
+    ViolationOut,
+)
+
+
+class CompareIn(Wire):
+    """What to compare. Without `start_deg` every method starts at its own choice of pose."""
+
+    trajectory: Sha256
+    rig: Name
+    methods: list[str] = Field(min_length=1, max_length=32)
+    start_deg: Four | None = None
+
+
+class FailureOut(Wire):
+    """Samples that miss the attitude for one reason."""
+
+    reason: str
+    samples: int
+    first_s: float
+    max_error_deg: float | None
+
+
+class MethodFiguresOut(Wire):
+    """One method: the keys of a solve's report and what sets it apart.
+
+    A method that does not apply to the rig has `refusal` and no figures.
+    """
+
+    method: str
+    source: str
+    claims_limits: bool
+    refusal: str | None
+    rig: str | None = None
+    samples: int | None = None
+    feasible: bool | None = None
+    exact_share: float | None = Field(default=None, description="0..1, of the samples")
+    max_error_deg: float | None = None
+    rms_error_deg: float | None = None
+    max_matrix_error: float | None = None
+    iterations: IterationsOut | None = None
+    step_us: StepTimeOut | None = None
+    solve_s: float | None = None
+    peak: PeaksOut | None = None
+    total_variation_deg: dict[FrameName, float] | None = None
+    limit_violations: list[ViolationOut] | None = None
+    limit_violation_samples: int | None = None
+    limit_violation_counts: dict[FrameName, dict[LimitName, int]] | None = None
+    limited_samples: int | None = None
+    limited_by: list[dict[str, str | int]] | None = None
+    blocking: BlockingOut | None = None
+    failures: list[FailureOut] | None = None
+
+
+class ComparisonReportOut(Wire):
+    """The report of `fullpose compare --report`, key by key; keys may be added, not renamed."""
+
+    schema_: str = Field(alias="schema")
+    flight: str
+    rig: str
+    geometry: str
+    samples: int
+    duration_s: float
+    resampling: str | None
+    exact_within_deg: float
+    methods: list[MethodFiguresOut]
+
+
+class ComparisonOut(Wire):
+    """A comparison and its job; once it is done, its report and the path of its page."""
+
+    id: str
+    status: JobStatus
+    progress: ProgressOut
+    trajectory: Sha256
+    trajectory_name: str
+    rig: Name
+    methods: list[str]
+    rate_hz: float
+    created_at: datetime
+    error: JobErrorOut | None
+    page: str | None = Field(description="Path of the page with table and plots")
+    report: ComparisonReportOut | None
