@@ -1,4 +1,7 @@
-"""Runs every method on every rig, and the rigs' loop, so that Numba's kernels are in the image's cache."""
+"""Runs methods on every rig, and the rigs' loop, so that Numba's kernels are in the cache: all methods for the image.
+
+Usage: warm.py [METHOD ...]
+"""
 
 import sys
 import time
@@ -25,7 +28,7 @@ def main() -> None:
         rows = np.loadtxt(path, delimiter=",", skiprows=1, max_rows=201)
     flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:]), 1000.0)
     attitude = dcm_from_quaternion(flight.q)
-    for method in method_names():
+    for method in sys.argv[1:] or method_names():
         started, flown = time.perf_counter(), []
         for name, rig in builtin_rigs().items():
             try:
