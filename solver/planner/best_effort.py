@@ -18,10 +18,13 @@ from solver.planner.refine import MET, NEAR, STRIDE, Limits, cost_weights, rig_l
 from solver.planner.rows import ROW, Flags, displaced, error_bands, limit_rows, over_limits
 from solver.rig import Rig
 from solver.solution import EXACT, limited_code
+from solver.start import start_pose
 
 Array = NDArray[np.float64]
 PADDING = 0.25  # [s] of the exact path given up on each side of a place outside the limits, at first
-ERROR_WEIGHT = 1e6  # [1/rad^2] beside rates and accelerations squared as shares of their limits
+ERROR_WEIGHT = 1e4  # [1/rad^2] beside rates and accelerations squared as shares of their limits
+SLACK_COST = 1e5  # of a limit exceeded by its whole: the limits win over the attitude
+APART = 8  # samples of the exact path at least between two stretches
 TRUST = 0.5  # [rad] a frame moves in one iteration at most
 ITERATIONS = 25
 
@@ -45,57 +48,75 @@ def least_error(
     n = len(time)
     limits = rig_limits(rig)
     over, whose = np.empty((n, 3)), np.empty((n, 3), np.int8)
-    x = angles.copy()
+    exact = angles.copy()
     if start is not None:
-        x[0] = start
-    limited = np.zeros(n, np.int16)
-    padding = PADDING
+        exact[0] = start
+    over_limits(time, exact, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
+    if start is not None and np.abs(angles[0] - start).max() > MET:
+        over[0, 0] = np.inf
+    bad = np.flatnonzero(over.max(axis=1) > MET)
+    stretches = _merged([_Stretch(int(k), int(k) + 1, PADDING) for k in bad], time)
+    freed: dict[tuple[int, int], tuple[Array, NDArray[np.int16], float]] = {}
     while True:
-        over_limits(time, x, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
-        if start is not None and not limited.any():
-            over[0, 0] = max(over[0, 0], float(np.abs(angles[0] - start).max()))
-        bad = np.flatnonzero(over.max(axis=1) > MET)
-        if not bad.size:
-            return BestEffort(x, limited, float(over.max()))
-        whole = padding > time[-1] - time[0]
-        x = angles.copy()
-        if start is not None:
-            x[0] = start
-        bad = np.union1d(bad, np.flatnonzero(limited))
-        limited[:] = EXACT
-        for begin, end in _stretches(time, bad, padding):
-            part = slice(begin, end)
-            fixed = (begin > 0, end < n)
-            x[part], limited[part] = _free(
-                time[part], attitude[part], x[part], rig, options, fixed, start if begin == 0 else None
-            )
-        if whole:
-            return BestEffort(x, limited, worst(time, x, limits)[0])
-        padding *= 2.0
+        grown: list[_Stretch] = []
+        for stretch in stretches:
+            begin, end = stretch.range(time)
+            if (begin, end) not in freed:
+                freed[begin, end] = _free(
+                    time[begin:end], attitude[begin:end], exact[begin:end], rig, options, (begin > 0, end < n),
+                    start if begin == 0 else None,
+                )  # fmt: skip
+            inside = freed[begin, end][2] <= MET or (begin == 0 and end == n)
+            grown.append(stretch if inside else _Stretch(stretch.begin, stretch.end, 2.0 * stretch.padding))
+        merged = _merged(grown, time)
+        if merged == stretches:
+            break
+        stretches = merged
+    x, limited = exact, np.full(n, EXACT, np.int16)
+    for stretch in stretches:
+        part = slice(*stretch.range(time))
+        x[part], limited[part], _ = freed[part.start, part.stop]
+    return BestEffort(x, limited, worst(time, x, limits)[0])
 
 
-def _stretches(time: Array, bad: NDArray[np.int64], padding: float) -> list[tuple[int, int]]:
-    """Half-open ranges of samples around the bad ones, padded by so many seconds, merged where they meet."""
-    begin = np.searchsorted(time, time[bad] - padding)
-    end = np.searchsorted(time, time[bad] + padding, side="right")
-    ranges: list[tuple[int, int]] = []
-    for a, b in zip(begin.tolist(), end.tolist(), strict=True):
-        if ranges and a <= ranges[-1][1] + 8:
-            ranges[-1] = (ranges[-1][0], max(b, ranges[-1][1]))
-        else:
-            ranges.append((a, b))
-    return ranges
+@dataclass(frozen=True)
+class _Stretch:
+    """Samples begin..end (half-open) outside the limits, and how much [s] is given up around them."""
+
+    begin: int
+    end: int
+    padding: float
+
+    def range(self, time: Array) -> tuple[int, int]:
+        """The samples given up, half-open."""
+        return (
+            int(np.searchsorted(time, time[self.begin] - self.padding)),
+            int(np.searchsorted(time, time[self.end - 1] + self.padding, side="right")),
+        )
+
+
+def _merged(stretches: list[_Stretch], time: Array) -> list[_Stretch]:
+    """The same, those that meet made one."""
+    merged: list[_Stretch] = []
+    for stretch in stretches:
+        if merged and stretch.range(time)[0] <= merged[-1].range(time)[1] + APART:
+            last = merged.pop()
+            stretch = _Stretch(last.begin, stretch.end, max(last.padding, stretch.padding))
+            while merged and stretch.range(time)[0] <= merged[-1].range(time)[1] + APART:
+                last = merged.pop()
+                stretch = _Stretch(last.begin, stretch.end, max(last.padding, stretch.padding))
+        merged.append(stretch)
+    return merged
 
 
 def _free(
     time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, pinned: tuple[bool, bool], start: Array | None
-) -> tuple[Array, NDArray[np.int16]]:  # fmt: skip
-    """(angles (n, 4), limited (n,)) of one stretch with all frames free."""
+) -> tuple[Array, NDArray[np.int16], float]:  # fmt: skip
+    """(angles (n, 4), limited (n,), overrun) of one stretch with all frames free; its seams count."""
     n = len(time)
     x = angles.copy()
     if n < 2:
-        x = np.clip(x, rig.position_min, rig.position_max)
-        return x, np.full(n, limited_code(0, 0), np.int16)
+        return _alone(attitude, x, rig)
     limits, true_limits = rig_limits(rig, options.reserve), rig_limits(rig)
     basis = spline_basis(time, options.knot)
     stride = max(1, int(options.knot / STRIDE / ((time[-1] - time[0]) / (n - 1))))
@@ -120,7 +141,7 @@ def _free(
             rig.axes, time, attitude, moved, basis.first, basis.values, stride, ERROR_WEIGHT,
             *cost_weights(rig, options), bands, np.zeros(len(problem.gradient)),
         )  # fmt: skip
-        merit = error + 1e6 * max(0.0, outside)
+        merit = error + SLACK_COST * max(0.0, outside)
         shift = float(np.abs(answer.coefficients).max())
         if best is None or merit < best[0]:
             settled = best is not None and best[0] - merit < 1e-4 * best[0] and outside <= MET
@@ -133,7 +154,13 @@ def _free(
             if trust < 1e-6:
                 break
     assert best is not None
-    return best[1], _codes(n, best[2], best[3])
+    return best[1], _codes(n, best[2], best[3]), worst(time, best[1], true_limits)[0]
+
+
+def _alone(attitude: Array, x: Array, rig: Rig) -> tuple[Array, NDArray[np.int16], float]:
+    """A flight of one sample with no exact pose inside the ranges: the pose in them that comes closest."""
+    pose, code = start_pose(rig, attitude[0], x[0])
+    return pose[None], np.array([code], np.int16), 0.0
 
 
 def _codes(n: int, answer: Answer, tag: NDArray[np.int64]) -> NDArray[np.int16]:
@@ -183,6 +210,6 @@ def _programme(
     tag = tag[:count]
     problem = QuadraticProgramme(
         bands, gradient, origin[:count], rows[:count], bound[:count], tag % 12 // 3, origin[:count], trust, pinned,
-        tuple(equalities), 4,
+        tuple(equalities), 4, SLACK_COST,
     )
     return problem, tag, error

@@ -47,6 +47,7 @@ class QuadraticProgramme:
     pinned: tuple[bool, bool]
     equalities: tuple[Equality, ...] = ()
     every: int = 1
+    slack_cost: float = SLACK_COST
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ def matrices(
     upper_part = sparse.diags(diagonals, list(range(len(diagonals))), shape=(m, m))
     hessian = upper_part + sparse.triu(upper_part, 1).T
     P = sparse.block_diag([hessian, sparse.identity(s) * 1e-3], format="csc")
-    q = np.concatenate([problem.gradient, np.full(s, SLACK_COST)])
+    q = np.concatenate([problem.gradient, np.full(s, problem.slack_cost)])
     column = (problem.origin[:, None] + np.arange(ROW)) * every + (problem.frame[:, None] if every > 1 else 0)
     kept = problem.rows != 0.0
     row_number = np.repeat(np.arange(r), kept.sum(axis=1))
