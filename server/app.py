@@ -17,6 +17,7 @@ from server.api.console import console
 from server.api.hosts import RigHosts
 from server.api.origin import OriginGuard
 from server.api.routes import audit, compare, health, plans, rigs, runs, sessions, solve, stream, trajectories
+from server.api.run_files import RunFiles
 from server.api.services import Services
 from server.plan_folder import rig_hash
 from server.runtime.config import RigConfig
@@ -142,6 +143,7 @@ def _build(settings: Settings, folder: Path, database: Database) -> Services:
         comparisons=Comparisons(folder / "comparisons"),
         audit=AuditLog(database),
         hosts=RigHosts(rig_store, config, directory),
+        runs=RunFiles(run_folder),
     )
 
 

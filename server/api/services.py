@@ -11,6 +11,7 @@ from starlette.requests import HTTPConnection
 
 from server.api.hosts import RigHosts
 from server.api.problems import ApiError
+from server.api.run_files import RunFiles
 from server.settings import Settings
 from server.store.audit import AuditLog
 from server.store.comparisons import Comparisons
@@ -34,6 +35,7 @@ class Services:
     comparisons: Comparisons
     audit: AuditLog
     hosts: RigHosts
+    runs: RunFiles
     started: float = field(default_factory=time.time)
     scene_lock: threading.Lock = field(default_factory=threading.Lock)
 

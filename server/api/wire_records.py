@@ -10,21 +10,23 @@ from server.api.wire_session import RigHealth, StateName
 
 
 class RunOut(Wire):
-    """A recorded run."""
+    """A recorded run; errors are those of the flight itself, running or held, leads left out."""
 
     id: str
     rig: str
     plan_id: str | None
     plan_hash: str | None
+    who: str
     started_at: datetime | None
     ended_at: datetime | None
     duration_s: float | None
-    samples: int | None
-    lost_samples: int | None = Field(description="Missing sequence numbers")
+    samples: int
+    lost_samples: int = Field(description="Sequence numbers that are missing")
     bytes: int
     complete: bool = Field(description="False while it is being written, or where the recorder was cut off")
     max_solve_error_deg: float | None
     max_tracking_error_deg: float | None
+    max_lateness_us: float | None
 
 
 class AuditOut(Wire):

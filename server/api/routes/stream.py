@@ -7,7 +7,7 @@ it. One that reads too slowly finds, when it is ready again, the newest samples,
 import asyncio
 import contextlib
 import time
-from typing import Any
+from collections.abc import Awaitable, Callable
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from pydantic import TypeAdapter
@@ -68,13 +68,13 @@ class _Client:
         await self._end_tasks()
         # Control and data have a task each: a session's change never waits for telemetry to be read.
         if "session" in message.topics:
-            self._tasks.append(asyncio.create_task(self._guarded(self._sessions())))
+            self._tasks.append(asyncio.create_task(self._guarded(self._sessions)))
         if "telemetry" in message.topics:
-            self._tasks.append(asyncio.create_task(self._guarded(self._telemetry(message))))
+            self._tasks.append(asyncio.create_task(self._guarded(lambda: self._telemetry(message))))
 
-    async def _guarded(self, work: Any) -> None:
+    async def _guarded(self, work: Callable[[], Awaitable[None]]) -> None:
         try:
-            await work
+            await work()
         except (WebSocketDisconnect, RuntimeError, OSError):
             with contextlib.suppress(RuntimeError):
                 await self._socket.close()  # wakes the reader, which ends the client

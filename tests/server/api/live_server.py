@@ -14,6 +14,7 @@ import uvicorn
 from websockets.sync.client import ClientConnection, connect
 
 from server.app import create_app
+from server.cli._serving import bind
 from server.settings import Settings
 
 FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(
@@ -117,7 +118,7 @@ class Operator:
 @contextmanager
 def live_server(folder: Path, **overrides: Any) -> Iterator[LiveServer]:
     settings = Settings(data_dir=folder, **overrides)
-    listener = socket.create_server(("127.0.0.1", 0))
+    listener = bind("127.0.0.1", 0)
     server = _Thread(settings, listener)
     server.start()
     try:

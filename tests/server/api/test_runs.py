@@ -1,0 +1,69 @@
+"""Runs: what was flown is listed, tells its errors, and goes out whole in every format."""
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from server.runtime.replay import read_samples
+from tests.server.api.live_server import LiveServer, Operator
+
+
+@pytest.fixture(scope="module")
+def run(server: LiveServer) -> str:
+    """A flight, flown."""
+    operator = Operator(server)
+    operator.to_idle()
+    plan = server.plan()
+    operator.command("load", plan=plan["id"])
+    operator.command("arm")
+    operator.command("start")
+    operator.wait("running")
+    operator.wait("armed")
+    operator.to_idle()
+    for _ in range(200):
+        runs = server.http.get("/runs").json()
+        if runs and runs[0]["complete"]:
+            assert runs[0]["plan_hash"] == plan["plan_hash"]
+            return str(runs[0]["id"])
+    raise AssertionError(f"no complete run: {runs}")
+
+
+def test_a_run_tells_what_was_flown_and_how_well(server: LiveServer, run: str) -> None:
+    body = server.http.get(f"/runs/{run}").json()
+    assert (body["rig"], body["who"], body["lost_samples"]) == ("vertical-4", "ann", 0)
+    assert body["samples"] > 2.0 * server.settings.rig_rate_hz
+    assert body["max_solve_error_deg"] < 1e-12
+    assert 0.0 < body["max_tracking_error_deg"] < 1.0
+    assert server.http.get("/runs", params={"rig": "vertical-3"}).json() == []
+    assert [line["id"] for line in server.http.get("/runs").json()] == [run]
+
+
+def test_csv_parquet_and_mcap_are_the_same_samples(server: LiveServer, run: str, tmp_path: Path) -> None:
+    mcap = tmp_path / "run.mcap"
+    mcap.write_bytes(server.http.get(f"/runs/{run}/export", params={"format": "mcap"}).content)
+    rows = read_samples(mcap)
+    assert len(rows) == server.http.get(f"/runs/{run}").json()["samples"]
+    answer = server.http.get(f"/runs/{run}/export", params={"format": "parquet"})
+    assert f'filename="{run}.parquet"' in answer.headers["content-disposition"]
+    table = pq.read_table(io.BytesIO(answer.content))
+    np.testing.assert_array_equal(table.column("seq").to_numpy(), rows["seq"])
+    np.testing.assert_array_equal(table.column("measured_inner_deg").to_numpy(), rows["measured"][:, 3])
+    lines = list(csv.DictReader(io.StringIO(server.http.get(f"/runs/{run}/export").text)))
+    assert list(lines[0]) == table.column_names
+    np.testing.assert_array_equal([float(line["demand_base_deg"]) for line in lines], rows["demand"][:, 0])
+    assert {line["state"] for line in lines} >= {"positioning", "running"}
+    assert list((server.settings.data_dir / "exports").iterdir()) == []
+
+
+def test_what_is_no_run(server: LiveServer, run: str) -> None:
+    for name in ("nothing", "..%2f..%2ffullpose"):
+        assert server.http.get(f"/runs/{name}").status_code == 404
+    assert server.http.get(f"/runs/{run}/export", params={"format": "xlsx"}).status_code == 422
+    (server.settings.data_dir / "runs" / "broken.mcap").write_bytes(b"not a record")
+    assert server.http.get("/runs/broken").status_code == 422
+    assert server.http.get("/runs/broken/export").status_code == 422
+    assert [line["id"] for line in server.http.get("/runs").json()] == [run]

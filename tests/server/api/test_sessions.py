@@ -1,0 +1,150 @@
+"""A session through HTTP, on a real rig process: what is allowed, what is refused, and what the audit says."""
+
+from typing import Any
+
+import pytest
+
+from server.session.states import State
+from server.session.table import allowed
+from tests.server.api.live_server import LiveServer, Operator
+
+
+def refused(answer: Any, status: int = 409) -> dict[str, Any]:
+    assert answer.status_code == status, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    body: dict[str, Any] = answer.json()
+    return body
+
+
+def test_a_rig_without_a_process_is_disconnected_and_says_what_can_be_done(server: LiveServer) -> None:
+    session = server.http.get("/rigs/horizontal-4/session").json()
+    assert (session["state"], session["allowed"], session["health"]["rig_alive"]) == (
+        "disconnected",
+        ["connect"],
+        False,
+    )
+    assert refused(server.http.post("/rigs/horizontal-4/stop"))["allowed"] == ["connect"]
+    assert refused(server.http.get("/rigs/nowhere/session"), 404)["type"].endswith("not-found")
+
+
+def test_a_flight_from_upload_to_its_end_with_hold_resume_and_audit(operator: Operator, server: LiveServer) -> None:
+    plan = server.plan()
+    assert plan["flyable"], plan["refusal"]
+    loaded = operator.command("load", plan=plan["id"])
+    assert loaded.json()["state_after"] == "ready", loaded.text
+    assert operator.session()["plan"]["plan_hash"] == plan["plan_hash"]
+    pair = {"plan_hash": plan["plan_hash"], "rig_hash": plan["rig_hash"]}
+    assert operator.command("arm", **pair).json()["state_after"] == "armed"
+    assert operator.command("start").json()["state_after"] == "positioning"
+    operator.wait("running")
+    assert operator.command("hold").json()["state_after"] == "held"
+    assert operator.command("resume").json()["state_after"] == "running"
+    session = operator.wait("armed")
+    assert session["alarms"] == []
+    log = server.http.get("/audit", params={"rig": "vertical-4", "limit": 5}).json()
+    assert [(line["command"], line["state_before"], line["state_after"]) for line in reversed(log)] == [
+        ("load", "idle", "ready"),
+        ("arm", "ready", "armed"),
+        ("start", "armed", "positioning"),
+        ("hold", "running", "held"),
+        ("resume", "held", "running"),
+    ]
+    assert {line["who"] for line in log} == {"ann"}
+    assert all(line["accepted"] and line["lease_epoch"] == operator.epoch for line in log)
+    assert log[4]["args"] == {"plan": plan["id"]}
+
+
+def test_an_illegal_command_changes_nothing_and_says_what_is_allowed(operator: Operator, server: LiveServer) -> None:
+    before = operator.session()
+    body = refused(operator.command("start"))
+    assert (body["type"], body["state"], body["command"]) == ("urn:fullpose:problem:illegal-command", "idle", "start")
+    assert body["allowed"] == [str(command) for command in allowed(State.IDLE)]
+    after = operator.session()
+    assert (after["state"], after["plan"]) == (before["state"], before["plan"])
+    line = server.http.get("/audit", params={"limit": 1}).json()[0]
+    assert (line["command"], line["accepted"], line["state_before"], line["state_after"]) == (
+        "start",
+        False,
+        "idle",
+        "idle",
+    )
+    assert line["detail"].startswith("illegal_command")
+
+
+def test_without_the_lease_only_stop_and_estop(operator: Operator, server: LiveServer) -> None:
+    url = "/rigs/vertical-4"
+    body = refused(
+        server.http.post(f"{url}/commands", json={"command": "load", "args": {"plan": server.plan()["id"]}}), 403
+    )
+    assert body["type"].endswith("lease-needed")
+    stale = {"command": "unload", "lease": {"epoch": operator.epoch, "sequence": 0}}
+    assert refused(server.http.post(f"{url}/commands", json=stale), 409)["type"].endswith("stale-command")
+    other = {"X-Fullpose-Client": "bob"}
+    assert refused(server.http.post(f"{url}/lease", headers=other))["type"].endswith("lease-held")
+    assert server.http.post(f"{url}/lease", json={"action": "request"}, headers=other).json()["requested_by"] == ["bob"]
+    assert server.http.post(f"{url}/lease", json={"action": "grant"}).json()["holder"] == "bob"
+    assert server.http.post(f"{url}/estop", headers=other).json()["state_after"] == "estopped"
+    operator.take("takeover")
+    assert operator.command("acknowledge").status_code == 200
+    assert operator.command("reset").json()["state_after"] == "idle"
+
+
+def test_stop_brakes_a_move_and_estop_latches(operator: Operator, server: LiveServer) -> None:
+    operator.command("load", plan=server.plan()["id"])
+    operator.command("arm")
+    assert operator.command("move", target_deg=[60.0, 20.0, 0.0, 0.0]).json()["state_after"] == "positioning"
+    assert server.http.post("/rigs/vertical-4/stop").json()["state_after"] == "stopping"
+    operator.wait("armed")
+    assert operator.command("jog", frame="base", step_deg=5.0).json()["state_after"] == "positioning"
+    assert server.http.post("/rigs/vertical-4/estop").json()["state_after"] == "estopped"
+    session = operator.wait("estopped")
+    assert session["alarms"][0]["severity"] == "emergency"
+    assert server.http.get("/rigs/vertical-4/alarms").json()[-1]["number"] == session["alarms"][0]["number"]
+    operator.wait("estopped")
+    assert refused(operator.command("reset"))["type"].endswith(("unacknowledged", "not-at-rest"))
+
+
+def test_load_takes_only_flyable_plans_of_this_rig(operator: Operator, server: LiveServer) -> None:
+    other = server.plan(rig="vertical-limited")
+    assert "vertical-limited" in refused(operator.command("load", plan=other["id"]))["detail"]
+    assert refused(operator.command("load", plan="nothing"), 404)
+    fast = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 50},0,0,{k * 30}\n" for k in range(50))
+    plan = server.plan(text=fast)
+    assert (plan["status"], plan["feasible"], plan["flyable"]) == ("done", False, False)
+    assert plan["refusal"]
+    assert plan["report"]["limited_samples"] + plan["report"]["limit_violation_samples"] > 0
+    assert plan["refusal"] in refused(operator.command("load", plan=plan["id"]))["detail"]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"command": "fly"},
+        {"command": "load"},
+        {"command": "load", "args": {"plan": 1}},
+        {"command": "move", "args": {"target_deg": [1, 2, 3]}},
+        {"command": "arm", "args": {"speed": 1}},
+        {"command": "arm", "lease": {"epoch": -1, "sequence": 0}},
+        {},
+        [],
+    ],
+)
+def test_a_body_that_is_no_command(server: LiveServer, body: Any) -> None:
+    assert refused(server.http.post("/rigs/vertical-4/commands", json=body), 422)["errors"]
+
+
+def test_a_loaded_plan_stays_until_it_is_unloaded(operator: Operator, server: LiveServer) -> None:
+    plan = server.plan()
+    operator.command("load", plan=plan["id"])
+    assert refused(server.http.delete(f"/plans/{plan['id']}"))["type"].endswith("in-use")
+    operator.command("unload")
+    assert server.http.delete(f"/plans/{plan['id']}").status_code == 204
+
+
+def test_metrics_and_health_tell_of_the_rig(operator: Operator, server: LiveServer) -> None:
+    text = server.http.get("/metrics").text
+    assert 'fullpose_session_state{rig="vertical-4",state="idle"} 1.0' in text
+    assert 'fullpose_rig_alive{rig="vertical-4"} 1.0' in text
+    health = server.http.get("/health").json()
+    assert health["status"] == "ok", health["warnings"]
+    assert health["rigs"]["vertical-4"]["ticks"] > 0
