@@ -57,7 +57,7 @@ class Desk:
                 after=loop.machine.state,
                 refused=None if error is None else error.code,
             )
-        loop.publish()
+        loop.panel.publish()
         state = loop.machine.state
         reply = wire.Reply(error is None, before, state, loop.machine.revision, error)
         return wire.Answer(request.id, reply, lease)

@@ -20,6 +20,7 @@ class ControlLink:
         self._socket = control_socket()
         self._waiting: dict[int, asyncio.Future[wire.Answer]] = {}
         self._numbers = itertools.count(1)
+        self._sending = asyncio.Lock()
         self._reader: asyncio.Task[None] | None = None
         self.open_for_requests = False
 
@@ -54,7 +55,8 @@ class ControlLink:
         waiting: asyncio.Future[wire.Answer] = asyncio.get_running_loop().create_future()
         self._waiting[number] = waiting
         try:
-            await asyncio.get_running_loop().sock_sendall(self._socket, packet)
+            async with self._sending:  # one writer at a time: the loop knows one callback a socket
+                await asyncio.get_running_loop().sock_sendall(self._socket, packet)
             return await asyncio.wait_for(waiting, timeout_s)
         except TimeoutError as cause:
             raise RigUnreachableError(f"the rig process has not answered within {timeout_s:g} s") from cause

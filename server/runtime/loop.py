@@ -16,25 +16,24 @@ import numpy as np
 
 from server.drives.base import Drive, Status
 from server.plan_folder import rig_hash
-from server.runtime import telemetry, wire
 from server.runtime.clock import Deadlines
 from server.runtime.config import RigConfig
 from server.runtime.control import ControlServer
 from server.runtime.desk import Desk
 from server.runtime.guard import Finding, Guard
-from server.runtime.motion import Mode, Motion
+from server.runtime.motion import Motion
+from server.runtime.panel import Panel
 from server.runtime.place import Place
-from server.runtime.shared import BUCKETS, Shared
+from server.runtime.shared import Shared
 from server.session.alarms import Severity
 from server.session.machine import SessionMachine, Silence
 from server.session.states import IN_MOTION, Action, Command, Event, State
 
 _RAD = math.pi / 180.0
-_DEG = 180.0 / math.pi
 _AT_REST = 0.5 * _RAD  # [rad/s] a table slower than this that brakes by itself counts as stopped
 _BRAKE_TIMEOUT_S = 5.0
 _COLLECT_S = 10.0
-_PUBLISH_S = 0.25  # at least this often, so that the lease's age and the recorder's word are fresh
+_RECORDER_SILENT_S = 1.0
 
 
 class RigLoop:
@@ -65,25 +64,25 @@ class RigLoop:
         self.ending = False
         self._ending_wanted = False
         self.measured = np.array(config.rig.home)
-        self._measured_rate = np.zeros(4)
-        self._drive_brakes = False  # the drive was told to brake by itself: our commands no longer count
+        self.measured_rate = np.zeros(4)
+        self.drive_brakes = False  # the drive was told to brake by itself: our commands no longer count
         self._drive_brakes_since = 0.0
         self._disable_at_rest = False
+        self._estop_unwritten = False
         self._start_recorder = start_recorder
         self._recorder = recorder
         self._server_silence = Silence(config.server)
         self._warned: set[tuple[str, str | None]] = set()
-        self._status = 0
+        self.status = 0
         self._sequence = 0
-        self._tick = 0
+        self.ticks = 0
         self._misses: list[float] = []
-        self._collected = self._published_at = 0.0
+        self._collected = 0.0
         self._idle_since = time.monotonic()
-        self._published = -1
         self._header = shared.header
-        self._row = np.zeros(1, telemetry.SAMPLE)
-        self._desk = Desk(self)
-        self._control = ControlServer(place, self._desk.answer)
+        self.desk = Desk(self)
+        self.panel = Panel(self)
+        self._control = ControlServer(place, self.desk.answer)
         self._header["period_ns"] = self.deadlines.period_ns
         if config.after_loss is not None:
             self.alarm("rig_process_lost", Severity.FAULT, config.after_loss)
@@ -92,7 +91,7 @@ class RigLoop:
 
     def run(self) -> None:
         """Tick until told to end, or nobody needs this process any more."""
-        self.publish()
+        self.panel.publish()
         while not self.ending:
             now_ns, lateness_ns, missed = self.deadlines.wait()
             self.tick(now_ns, lateness_ns, missed)
@@ -113,16 +112,17 @@ class RigLoop:
         self._control.poll()
         if self._ending_wanted:
             self._end_when_at_rest(now)
-        self._status = self.drive.read(now, self.measured, self._measured_rate) if self.machine.linked else 0
+        self.status = self.drive.read(now, self.measured, self.measured_rate) if self.machine.linked else 0
         if self.machine.linked:
             self._judge_drive()
         error = self._judge_measured(now)
         self._judge_time(now, lateness_ns, missed)
-        if self._tick % 16 == 0:
+        if self.ticks % 16 == 0:
             self._silences(now)
+            self._judge_recorder(now)
         self._move(now)
-        self._record(now_ns, lateness_ns, missed, error)
-        self._tick += 1
+        self.panel.record(now_ns, lateness_ns, missed, error)
+        self.ticks += 1
         self._after(now, now_ns, lateness_ns)
 
     # --- orders ---
@@ -180,16 +180,16 @@ class RigLoop:
         """Disable the drive; from here on the command is where the table stands."""
         self.drive.disable()
         self.enabled = False
-        self._drive_brakes = False
+        self.drive_brakes = False
 
     def _brake_fastest(self) -> None:
-        if self.enabled and not self._drive_brakes and self.machine.moving:
+        if self.enabled and not self.drive_brakes and self.machine.moving:
             self.motion.brake(fastest=True)
 
     def _let_drive_brake(self, now: float) -> None:
         """Commands cannot be trusted to reach the frames: the drive's own brakes must do it."""
         self.drive.brake()
-        self._drive_brakes = True
+        self.drive_brakes = True
         self._drive_brakes_since = now
 
     def _rest(self) -> None:
@@ -204,7 +204,7 @@ class RigLoop:
         if not self.machine.moving:
             self.ending = True
         elif self.machine.state is not State.ESTOPPED:
-            self._desk.lane(Command.ESTOP, "SIGTERM", now)
+            self.desk.lane(Command.ESTOP, "SIGTERM", now)
 
     # --- judging ---
 
@@ -215,18 +215,19 @@ class RigLoop:
             if asked == int(header[f"{lane}_done_ns"][0]):
                 continue
             who = bytes(header[f"{lane}_who"][0]).decode("utf-8", "replace")
-            self._desk.lane(command, who, now)
+            self.desk.lane(command, who, now)
             header[f"{lane}_done_ns"] = asked
+            self._estop_unwritten = lane == "estop" or self._estop_unwritten
 
     def _judge_drive(self) -> None:
-        status = self._status
+        status = self.status
         now = time.monotonic()
         if status & Status.LINK_LOST:
-            self.enabled = self._drive_brakes = False
+            self.enabled = self.drive_brakes = False
             self.alarm("link_lost", Severity.FAULT, f"drive {self.drive.name}: link lost; the drive brakes by itself")
             self.report(Event.LINK_LOST)
             self.drive.close()
-        elif self.enabled and not self._drive_brakes and status & (Status.FAULT | Status.ENCODER | Status.WATCHDOG):
+        elif self.enabled and not self.drive_brakes and status & (Status.FAULT | Status.ENCODER | Status.WATCHDOG):
             word = "encoder" if status & Status.ENCODER else "watchdog" if status & Status.WATCHDOG else "fault"
             frame = None
             lost = np.flatnonzero(~np.isfinite(self.measured))
@@ -245,7 +246,7 @@ class RigLoop:
     def _judge_measured(self, now: float) -> float:
         """The tracking error [rad]; nan where nothing is followed."""
         motion = self.motion
-        if not self.enabled or self._drive_brakes:
+        if not self.enabled or self.drive_brakes:
             return math.nan
         error, found = self.guard.measured(self.measured, motion.x1, motion.q1)
         if found is not None:
@@ -264,6 +265,21 @@ class RigLoop:
                 found = found or self.guard.scalar("missed_deadlines", count, self.config.guard.misses_per_s, "in 1 s")
                 if found is not None:
                     self.judge(found)
+
+    def _judge_recorder(self, now: float) -> None:
+        """A run goes on without its record, but not unsaid."""
+        if self.run_id is None:
+            return
+        header = self._header
+        error = bytes(header["recorder_error"][0])
+        free = int(header["recorder_free_bytes"][0]) / 1e6
+        if now - int(header["recorder_beat_ns"][0]) / 1e9 > _RECORDER_SILENT_S:
+            self.warn(Finding("recorder_lost", False, "the recorder does not run", None, math.nan, math.nan, ""))
+        if error:
+            self.warn(Finding("record_error", False, error.decode("utf-8", "replace"), None, math.nan, math.nan, ""))
+        if 0 < free < self.config.min_free_mb:
+            text = f"{free:.0f} MB free where runs are recorded"
+            self.warn(Finding("disk_low", False, text, None, free, self.config.min_free_mb, "MB"))
 
     def _silences(self, now: float) -> None:
         owned = self.machine.state in IN_MOTION or self.machine.state is State.ARMED
@@ -309,11 +325,11 @@ class RigLoop:
 
     def _move(self, now: float) -> None:
         motion = self.motion
-        if not self.enabled or self._drive_brakes:
+        if not self.enabled or self.drive_brakes:
             if np.isfinite(self.measured).all():
                 motion.rest_at(self.measured)
             if self.machine.moving:
-                stopped = np.abs(self._measured_rate).max() < _AT_REST
+                stopped = np.abs(self.measured_rate).max() < _AT_REST
                 if stopped or now - self._drive_brakes_since > _BRAKE_TIMEOUT_S:
                     self.report(Event.AT_REST)
                     self._rest()
@@ -333,6 +349,9 @@ class RigLoop:
         self._sequence += 1
         self.drive.write(motion.x, motion.v, motion.a, self.machine.epoch, self._sequence)
         motion.commit()
+        if self._estop_unwritten:
+            self._estop_unwritten = False
+            self._header["estop_wrote_ns"] = time.monotonic_ns()
         if event is not None:
             self.report(event)
             if event is Event.AT_REST:
@@ -350,78 +369,11 @@ class RigLoop:
         """Add an event for the recorder and the server's audit log."""
         self.shared.add_event({"kind": kind, "time_ns": time.monotonic_ns(), "wall_ns": time.time_ns(), **content})
 
-    def publish(self) -> None:
-        """Publish the session's snapshot."""
-        now_ns = time.monotonic_ns()
-        machine, bound = self.machine, self.machine.binding
-        ref = None
-        if bound is not None:
-            info = None if self._desk.plan is None else self._desk.plan.info
-            name, duration = ("", None) if info is None else (info.name, info.duration_s)
-            ref = wire.PlanRef(bound.plan_id, bound.plan_hash, bound.rig_hash, bound.live, name, duration)
-        lease = machine.lease(now_ns / 1e9)
-        heard = now_ns - int(1e9 * (self.config.owner.hold_s - (lease.expires_s or 0.0)))
-        published = wire.Published(
-            rig=self.config.name,
-            state=machine.state,
-            revision=machine.revision,
-            allowed=[str(c) for c in machine.allowed()],
-            lease=lease,
-            lease_heard_ns=heard,
-            lease_silent_s=self.config.owner.hold_s,
-            plan=ref,
-            alarms=list(machine.alarms.standing),
-            history=list(machine.alarms.history[-64:]),
-            realtime=self.realtime,
-            run_id=self.run_id,
-            drive=self.drive.name,
-        )
-        self.shared.publish(wire.encode(published), machine.revision)
-        self._published = machine.revision
-        self._published_at = now_ns / 1e9
-
-    def _record(self, now_ns: int, lateness_ns: int, missed: int, error: float) -> None:
-        row, motion = self._row, self.motion
-        machine = self.machine
-        row["time_ns"] = now_ns
-        row["wall_ns"] = time.time_ns()
-        row["state"] = machine.state.code
-        flags = telemetry.LATE if missed else 0
-        flags |= telemetry.ENABLED if self.enabled else 0
-        if motion.mode is Mode.BRAKE or self._drive_brakes or self._status & Status.BRAKING:
-            flags |= telemetry.BRAKING
-        if motion.mode is Mode.PATH and math.isnan(motion.q[0]):
-            flags |= telemetry.LEAD
-        row["flags"] = flags
-        row["revision"] = machine.revision
-        row["path_time_s"] = motion.path_time_s
-        row["path_scale"] = motion.path_scale
-        np.multiply(motion.x, _DEG, out=row["demand"][0])
-        np.multiply(motion.v, _DEG, out=row["demand_rate"][0])
-        np.multiply(motion.a, _DEG, out=row["demand_acceleration"][0])
-        np.multiply(self.measured, _DEG, out=row["measured"][0])
-        np.multiply(self._measured_rate, _DEG, out=row["measured_rate"][0])
-        row["target"] = motion.q
-        row["solve_error_deg"] = motion.solve_error(self.rig.axes) * _DEG
-        row["tracking_error_deg"] = error * _DEG
-        if self.enabled:
-            np.multiply(self.guard.following, _DEG, out=row["following_error_deg"][0])
-        else:
-            row["following_error_deg"] = 0.0
-        row["margin"] = self.guard.margin
-        row["lateness_us"] = lateness_ns / 1e3
-        row["tick"] = self._tick
-        self.shared.ring.append(row)
-
     def _after(self, now: float, now_ns: int, lateness_ns: int) -> None:
         header = self._header
-        header["ticks"] += 1
-        self.shared.histogram[min(lateness_ns // 1000, BUCKETS - 1)] += 1
-        if lateness_ns > int(header["max_lateness_ns"][0]):
-            header["max_lateness_ns"] = lateness_ns
-        if self.machine.revision != self._published or now - self._published_at > _PUBLISH_S:
-            self.publish()
-        resting = self.machine.state in (State.DISCONNECTED, State.IDLE, State.READY)
+        self.panel.count(lateness_ns)
+        self.panel.refresh(now)
+        resting = not self.machine.moving and self.machine.state is not State.ARMED
         if resting and now - self._collected > _COLLECT_S:
             self._at_leisure()
             self._collected = now

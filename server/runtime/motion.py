@@ -35,6 +35,9 @@ class Mode(Enum):
 class LiveFollower(Protocol):
     """A live source, as motion sees it."""
 
+    stale: bool
+    limited: bool
+
     def tick(self, x1: Array, v1: Array, x: Array, q: Array) -> bool:
         """Fill the next command x and the attitude q it follows; False where the source is lost."""
         ...
@@ -156,6 +159,16 @@ class Motion:
         if math.isnan(self.q[0]):
             return math.nan
         return float(attitude_error(axes, self.x, self.q))
+
+    @property
+    def stale(self) -> bool:
+        """Whether a live source is followed and late: the attitude is extrapolated."""
+        return self.mode is Mode.LIVE and self._live is not None and self._live.stale
+
+    @property
+    def limited(self) -> bool:
+        """Whether limits keep the command from the attitude it follows."""
+        return self.mode is Mode.LIVE and self._live is not None and self._live.limited
 
     @property
     def path_time_s(self) -> float:

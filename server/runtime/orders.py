@@ -53,13 +53,15 @@ def load_of(args: dict[str, Any], config: RigConfig) -> Load:
         plan = read_plan(Path(folder))
     except PlanFolderError as cause:
         raise OrderError("bad_plan", str(cause)) from cause
-    _check_rest(plan, config.rig)
+    _check_path(plan, config.rig)
     info = plan.info
     return Load(Binding(info.plan_id, info.plan_hash, info.rig, info.rig_hash), plan, None)
 
 
-def _check_rest(plan: PlanFolder, rig: Rig) -> None:
-    """A path is entered and left at rest: its first and last step are no faster than one tick of acceleration."""
+def _check_path(plan: PlanFolder, rig: Rig) -> None:
+    """A path is finite, and entered and left at rest: no step there is faster than one tick of acceleration."""
+    if not np.isfinite(plan.angles).all():
+        raise OrderError("bad_plan", "the plan's angles are not all finite")
     rate = plan.info.rate_hz
     for where, step in (("begin", plan.angles[1] - plan.angles[0]), ("end", plan.angles[-1] - plan.angles[-2])):
         allowed = np.where(np.isfinite(rig.max_acceleration), rig.max_acceleration, math.inf) / rate

@@ -1,0 +1,288 @@
+"""Processes killed and stopped for real: limits kept, the cause named, the record readable, the session adopted.
+
+FULLPOSE_FAULTS sets how many random moments are tried (a few by default; the campaign of bench/ tries a hundred).
+"""
+
+import asyncio
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mcap.stream_reader import StreamReader
+
+from server.runtime.config import encode
+from server.runtime.host import RigHost
+from server.runtime.place import Place
+from server.session.machine import SilencePolicy
+from tests.server.runtime.rigs import Operator, config_of, hosted, plan_of, written
+from tests.server.runtime.test_host import within_limits
+
+MOMENTS = int(os.environ.get("FULLPOSE_FAULTS", "3"))
+QUICK = SilencePolicy(0.3, 2.5, 60.0)
+
+SERVER = """
+import asyncio, sys
+from pathlib import Path
+from server.runtime import config
+from server.runtime.host import RigHost
+from tests.server.runtime.rigs import Operator
+
+async def main(settings, plan):
+    host = RigHost(config.decode(Path(settings).read_bytes()))
+    await host.start()
+    operator = Operator(host, "the first server")
+    await operator.arm(Path(plan))
+    await operator.must("start")
+    await operator.until("running")
+    print("running", host.snapshot().health.rig_pid, flush=True)
+    while True:
+        await host.lease("renew", operator.who)
+        await asyncio.sleep(0.1)
+
+asyncio.run(main(*sys.argv[1:]))
+"""
+
+
+def messages(path: Path) -> list[int]:
+    """Sequences of the telemetry that can be read from a file, whole or cut off."""
+    from server.runtime.replay import recover_messages
+
+    return [m.sequence for topic, m in recover_messages(path) if topic == "/telemetry"]
+
+
+@pytest.mark.parametrize("seed", range(MOMENTS))
+def test_a_killed_rig_process_is_said_at_once_and_its_record_is_whole(tmp_path: Path, seed: int) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
+        async with hosted(config) as (host, operator):
+            await operator.arm(plan)
+            await operator.must("start")
+            await operator.until("running")
+            await asyncio.sleep(float(np.random.default_rng(seed).uniform(0.1, 4.0)))
+            pid = host.snapshot().health.rig_pid
+            shared = host._shared
+            assert shared is not None
+            revision = host.revision
+            killed = time.monotonic()
+            os.kill(pid, signal.SIGKILL)
+            await host.wait_change(revision)
+            assert time.monotonic() - killed < 0.2
+            told = host.snapshot()
+            assert not told.health.rig_alive
+            assert (told.state, told.allowed) == ("disconnected", [])
+            last = shared.ring.head
+            deadline = time.monotonic() + 20.0
+            while (revision := host.revision) and time.monotonic() < deadline:
+                if host.snapshot().health.rig_alive:
+                    break
+                await asyncio.wait_for(host.wait_change(revision), 20.0)
+            again = host.snapshot()
+            assert again.health.rig_pid != pid
+            assert again.state == "disconnected"
+            assert again.revision > told.revision
+            (alarm,) = again.alarms
+            assert alarm.code == "rig_process_lost"
+            assert "signal 9" in alarm.message
+            assert "running" in alarm.message
+        (record,) = (tmp_path / "runs").iterdir()
+        numbers = messages(record)
+        assert (np.diff(numbers) == 1).all()
+        assert last - numbers[-1] <= 200
+
+    asyncio.run(fly())
+
+
+def test_a_killed_recorder_loses_no_more_than_a_chunk_and_is_replaced_at_rest(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        plan = written(tmp_path / "plan", plan_of(config.rig, 3.0))
+        async with hosted(config) as (host, operator):
+            await operator.arm(plan)
+            await operator.must("start")
+            await operator.until("running")
+            await asyncio.sleep(2.0)
+            shared = host._shared
+            assert shared is not None
+            last = shared.ring.head
+            os.kill(int(shared.header["recorder_pid"][0]), signal.SIGKILL)
+            snapshot = await operator.until("armed", "faulted")
+            assert snapshot.state == "armed"  # the loop never stops for the record
+            assert [a.code for a in snapshot.alarms] == ["recorder_lost"]
+            assert not snapshot.health.recorder.alive
+            await operator.must("disarm")
+            refused = await operator.say("arm")
+            assert refused.error is not None
+            assert refused.error.code == "no_record"
+            for _ in range(100):
+                if host.snapshot().health.recorder.alive:
+                    break
+                await asyncio.sleep(0.2)
+                await host.lease("renew", operator.who)
+            await operator.must("arm")
+        numbers = messages(next(iter((tmp_path / "runs").iterdir())))
+        assert (np.diff(numbers) == 1).all()
+        assert last - numbers[-1] <= 200
+
+    asyncio.run(fly())
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_dead_or_stopped_server_leaves_the_rig_held_and_the_session_is_adopted(
+    tmp_path: Path, how: signal.Signals
+) -> None:
+    config = config_of(tmp_path, server=QUICK)
+    plan = written(tmp_path / "plan", plan_of(config.rig, 8.0))
+    settings = tmp_path / "settings.json"
+    settings.write_bytes(encode(config))
+    process = subprocess.Popen(
+        [sys.executable, "-c", SERVER, str(settings), str(plan)], stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    try:
+        word, pid = process.stdout.readline().split()
+        assert word == "running"
+        time.sleep(1.0)
+        process.send_signal(how)
+        if how == signal.SIGKILL:
+            process.wait()
+        asyncio.run(_adopt(config, int(pid)))
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+
+
+async def _adopt(config: object, pid: int) -> None:
+    await asyncio.sleep(1.0)
+    host = RigHost(config)  # type: ignore[arg-type]
+    await host.start()
+    try:
+        assert host.adopted
+        snapshot = host.snapshot()
+        assert snapshot.health.rig_pid == pid
+        assert snapshot.state == "held"
+        assert snapshot.lease.holder == "the first server"
+        assert snapshot.plan is not None
+        assert "server_silent" in [a.code for a in snapshot.alarms]
+        within_limits(host.samples(0, 1 << 20)[0], host)
+        operator = Operator(host, "the second server")
+        await operator.take("takeover")
+        await operator.must("resume")
+        await operator.until("armed")
+        rows, _ = host.samples(0, 1 << 20)
+        assert np.nanmax(rows["solve_error_deg"]) <= 1e-9
+    finally:
+        await host.close(stop_rig=True)
+    assert Place(host.config.directory).running() is None
+
+
+def test_a_server_that_stays_away_means_a_stop_and_in_the_end_the_process_leaves(tmp_path: Path) -> None:
+    config = config_of(tmp_path, server=SilencePolicy(0.3, 0.6, 0.9), exit_idle_s=2.0)
+    plan = written(tmp_path / "plan", plan_of(config.rig, 8.0))
+    settings = tmp_path / "settings.json"
+    settings.write_bytes(encode(config))
+    process = subprocess.Popen(
+        [sys.executable, "-c", SERVER, str(settings), str(plan)], stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    try:
+        pid = int(process.stdout.readline().split()[1])
+        process.kill()
+        process.wait()
+        deadline = time.monotonic() + 20.0
+        while Path(f"/proc/{pid}").exists() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        assert not Path(f"/proc/{pid}").exists()
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+    assert not Place(config.directory).memory().exists()
+    numbers = messages(next(iter((tmp_path / "runs").iterdir())))
+    assert (np.diff(numbers) == 1).all()
+
+
+def test_a_stopped_rig_process_is_said_and_brakes_when_it_wakes(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
+        async with hosted(config) as (host, operator):
+            await operator.arm(plan)
+            await operator.must("start")
+            await operator.until("running")
+            await asyncio.sleep(1.5)
+            pid = host.snapshot().health.rig_pid
+            revision = host.revision
+            os.kill(pid, signal.SIGSTOP)
+            try:
+                stopped = time.monotonic()
+                await host.wait_change(revision)
+                assert time.monotonic() - stopped < 0.25
+                assert not host.snapshot().health.rig_alive
+                await asyncio.sleep(0.5)
+            finally:
+                os.kill(pid, signal.SIGCONT)
+            snapshot = await operator.until("faulted")
+            first = next(a for a in snapshot.alarms if a.first)
+            assert first.code in ("drive_watchdog", "lateness")
+            within_limits(host.samples(0, 1 << 20)[0], host)
+            await operator.recover()
+
+    asyncio.run(fly())
+
+
+def test_a_thousand_queued_commands_do_not_delay_an_estop(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
+        async with hosted(config) as (host, operator):
+            await operator.arm(plan)
+            await operator.must("start")
+            await operator.until("running")
+            await asyncio.sleep(1.0)
+            shared = host._shared
+            assert shared is not None
+            # Pretended loads: each is refused, but only after it was read and judged.
+            queued = [asyncio.ensure_future(host.command("load", {}, "noise", None)) for _ in range(1000)]
+            await asyncio.sleep(0.005)
+            _, noted = shared.events_since(0)
+            host.estop("panic")
+            await asyncio.gather(*queued)
+            asked, wrote = int(shared.header["estop_request_ns"][0]), int(shared.header["estop_wrote_ns"][0])
+            assert wrote >= asked
+            events, _ = shared.events_since(noted)
+            words = [e["command"] for e in events if e["kind"] == "command"]
+            assert words.index("estop") < 50  # of a thousand
+            await operator.until("estopped")
+            within_limits(host.samples(0, 1 << 20)[0], host)
+
+    asyncio.run(fly())
+
+
+def test_stream_reader_is_the_library_s(tmp_path: Path) -> None:
+    """What `recover_messages` reads of a whole file is what the library itself reads."""
+    from mcap.records import Message
+
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        async with hosted(config) as (_, operator):
+            await operator.arm(written(tmp_path / "plan", plan_of(config.rig, 0.5)))
+            await operator.must("start")
+            await operator.until("running")
+            await operator.until("armed")
+            await asyncio.sleep(0.3)
+
+    asyncio.run(fly())
+    (record,) = (tmp_path / "runs").iterdir()
+    with record.open("rb") as file:
+        whole = [r.sequence for r in StreamReader(file).records if isinstance(r, Message) and r.channel_id == 1]
+    assert messages(record) == whole
