@@ -72,9 +72,7 @@ def large_angles() -> None:
 
 def over_the_limit() -> None:
     """Zhao 2025, a limit binds: below 1e-3; distorted beyond about 120 deg of pitch; 6 to 10 iterations."""
-    print(
-        "\nover the limit, inner +-60 deg, position limits only (published: below 1e-3; distorted past 120 deg of pitch)"
-    )
+    print("\nover the limit: inner +-60 deg, no other limit (published: below 1e-3; distorted past 120 deg of pitch)")
     for name in ("over_limit_small_pitch", "over_limit", "over_limit_large_pitch", "over_limit_loop"):
         scenario = SCENARIOS[name]
         for label, options in (("open", PAPER), ("closed", CLOSED), ("exact", EXACT)):
@@ -83,7 +81,7 @@ def over_the_limit() -> None:
             peaks = verify(solution.time, solution.angles, POSITION_ONLY).peaks
             count = f"{np.median(solution.iterations[bound]):g}" if bound.any() else "-"
             print(
-                f"{name:24}{label:8}at the limit {100 * bound.mean():4.1f} % of the samples, {count:>2} iterations there,"
+                f"{name:24}{label:8}at the limit {100 * bound.mean():4.1f} % of the time, {count:>2} iterations there,"
                 f" {solution.limited_samples} limited, matrix error {solution.matrix_error.max():.1e},"
                 f" peak rate {np.degrees(peaks[:, 1].max()):.0f} deg/s"
             )
