@@ -43,7 +43,10 @@ class Drive(Protocol):
         ...
 
     def enable(self) -> None:
-        """Release the brakes and follow writes from the present position. Raises `DriveError`."""
+        """Release the brakes and follow writes from the present position; their sequence begins anew.
+
+        Raises `DriveError`.
+        """
         ...
 
     def read(self, now: float, position: Array, rate: Array) -> int:

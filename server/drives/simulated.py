@@ -94,6 +94,7 @@ class SimulatedDrive:
         self._watchdog = max(2, round(options.watchdog_s * rate_hz))
         self._epoch = self._sequence = -1
         self._linked = False
+        self._advance(0)  # compiles the kernel now, not in the first tick
 
     def connect(self, now: float) -> None:
         """Always succeeds."""
@@ -110,6 +111,7 @@ class SimulatedDrive:
         self._demand[1:] = 0.0
         self._late.clear()
         self._quiet = 0
+        self._epoch = self._sequence = -1  # a new series: the controller may be a new process
         self._mode = servo.ENABLED
         self._status = Status.OK
 
@@ -130,18 +132,7 @@ class SimulatedDrive:
         while len(self._late) > latency:
             self._demand[:] = self._late.popleft()
         before = self._mode
-        self._mode = servo.advance(
-            ticks,
-            self._dt,
-            self._state,
-            self._parameters,
-            self._disturbed,
-            self._was,
-            self._demand,
-            self._mode,
-            self._quiet,
-            self._watchdog,
-        )
+        self._mode = self._advance(ticks)
         self._quiet += ticks
         self._was[:] = self._demand[0]
         if before == servo.ENABLED and self._mode == servo.BRAKING:
@@ -188,6 +179,21 @@ class SimulatedDrive:
         """Let the link go."""
         self._mode = servo.BRAKING
         self._linked = False
+
+    def _advance(self, ticks: int) -> int:
+        mode: int = servo.advance(
+            ticks,
+            self._dt,
+            self._state,
+            self._parameters,
+            self._disturbed,
+            self._was,
+            self._demand,
+            self._mode,
+            self._quiet,
+            self._watchdog,
+        )
+        return mode
 
     _latency_now = 0
 

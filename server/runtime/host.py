@@ -32,6 +32,7 @@ from server.session.table import allowed
 
 START_S = 20.0
 REPLY_S = 5.0
+_END_S = 15.0
 POLL_S = 0.005
 BEAT_S = 0.05
 SILENT_S = 0.15  # a rig heartbeat older than this counts as not responding
@@ -97,19 +98,21 @@ class RigHost:
             self._watch.cancel()
             await asyncio.gather(self._watch, return_exceptions=True)
         if stop_rig and self._link is not None and not self._dead:
-            with contextlib.suppress(RigUnreachableError):
-                await self._link.request("exit", "server", timeout_s=REPLY_S)
-            await self._wait_for_end()
+            await self._end_process(self._link)
         await self._detach()
         if self._beat is not None:
             self._beat.join()
 
-    async def _wait_for_end(self) -> None:
-        for _ in range(int(REPLY_S / POLL_S)):
-            if self._ended():
-                return
-            await asyncio.sleep(POLL_S)
-        raise HostError(f"rig process {self._pid} of {self.name} does not end")
+    async def _end_process(self, link: ControlLink) -> None:
+        deadline = time.monotonic() + _END_S
+        while not self._ended():
+            # Refused while the rig moves, and answered with an E-stop: ask again when it is at rest.
+            with contextlib.suppress(RigUnreachableError):
+                if link.open_for_requests:
+                    await link.request("exit", "server", timeout_s=REPLY_S)
+            await asyncio.sleep(0.05)
+            if time.monotonic() > deadline:
+                raise HostError(f"rig process {self._pid} of {self.name} does not end")
 
     # --- commands ---
 

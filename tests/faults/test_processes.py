@@ -24,7 +24,7 @@ from tests.server.runtime.rigs import Operator, config_of, hosted, plan_of, writ
 from tests.server.runtime.test_host import within_limits
 
 MOMENTS = int(os.environ.get("FULLPOSE_FAULTS", "3"))
-QUICK = SilencePolicy(0.3, 2.5, 60.0)
+QUICK = SilencePolicy(0.8, 8.0, 60.0)
 
 SERVER = """
 import asyncio, sys
@@ -160,7 +160,7 @@ def test_a_dead_or_stopped_server_leaves_the_rig_held_and_the_session_is_adopted
 
 
 async def _adopt(config: object, pid: int) -> None:
-    await asyncio.sleep(1.0)
+    await asyncio.sleep(2.0)
     host = RigHost(config)  # type: ignore[arg-type]
     await host.start()
     try:
