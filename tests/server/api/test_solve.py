@@ -18,7 +18,7 @@ Q = Rotation.from_euler("YZX", EULER, degrees=True).as_quat(scalar_first=True)
 def attitude(angles_deg: Any) -> np.ndarray[Any, Any]:
     """Payload attitude of vertical-4 (axes y, z, y, x): passive turns are the transposes of SciPy's active ones."""
     d = np.array(angles_deg)
-    turned = Rotation.from_euler("Y", d[:, 0], degrees=True) * Rotation.from_euler("ZYX", d[:, 1:], degrees=True)
+    turned = Rotation.from_euler("Y", d[:, :1], degrees=True) * Rotation.from_euler("ZYX", d[:, 1:], degrees=True)
     return turned.as_matrix().swapaxes(1, 2)
 
 
