@@ -41,6 +41,8 @@ def main() -> None:
         build()()
     except (StoreError, SolverError) as error:
         fail(str(error))
+    except KeyboardInterrupt:
+        sys.exit(130)  # as a shell says it
     except BrokenPipeError:  # the reader of a pipe has gone: nothing to say to anybody
         sys.stderr.close()
         sys.exit(0)

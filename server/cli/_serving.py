@@ -1,24 +1,15 @@
-"""Running the server: one socket, one event loop, an orderly end. Shared by `serve` and `demo`."""
+"""Before the server runs: its settings and its socket, and what is wrong with them. Shared by `serve` and `demo`."""
 
-import asyncio
-import contextlib
 import errno
 import logging
-import signal
 import socket
 import sys
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
-import uvicorn
-
-from server.app import create_app
 from server.cli._exit import fail
-from server.client import ClientError
-from server.runtime.host import HostError
 from server.settings import Settings
-from server.store.errors import StoreError
 
 BACKLOG = 512
 UNSENT = 16_384  # bytes the system may hold unsent for a client; what is older than that would only make it late
@@ -46,12 +37,9 @@ def run(settings: Settings, ready: Ready) -> None:
     """Serve until SIGINT or SIGTERM. The address is the first line of stdout; then `ready` runs beside the server."""
     logging.basicConfig(format="%(asctime)s %(name)s %(message)s", level=logging.WARNING, stream=sys.stderr)
     listener = bind(settings.host, settings.port)
-    try:
-        asyncio.run(_run(settings, listener, ready))
-    except StoreError as error:
-        fail(str(error))
-    except (HostError, ClientError) as error:
-        fail(str(error), 1)
+    from server.cli._event_loop import serve  # seconds; what can be refused without it has been
+
+    serve(settings, listener, address(listener), ready)
 
 
 def bind(host: str, port: int) -> socket.socket:
@@ -78,54 +66,3 @@ def address(listener: socket.socket) -> str:
     if host in ("0.0.0.0", "::"):
         host = "localhost"
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
-
-
-async def _run(settings: Settings, listener: socket.socket, ready: Ready) -> None:
-    app = create_app(settings)
-    config = uvicorn.Config(
-        app,
-        lifespan="off",  # ours, below: its errors are for the person at the terminal
-        log_config=None,
-        access_log=False,
-        ws_per_message_deflate=False,  # telemetry is small and frequent
-        timeout_graceful_shutdown=3,
-        server_header=False,
-    )
-    async with app.router.lifespan_context(app):
-        server = _Server(config)
-        serving = asyncio.create_task(server.serve(sockets=[listener]))
-        sys.stdout.write(f"{address(listener)}\n")
-        sys.stdout.flush()
-        beside = asyncio.create_task(_beside(ready, address(listener), server))
-        await serving
-        beside.cancel()
-        results = await asyncio.gather(beside, return_exceptions=True)
-    for result in results:
-        if isinstance(result, Exception):
-            raise result
-
-
-async def _beside(ready: Ready, url: str, server: uvicorn.Server) -> None:
-    try:
-        await ready(url)
-    except Exception:
-        if not server.should_exit:  # at the end every connection of ours breaks off too
-            server.should_exit = True
-            raise
-
-
-class _Server(uvicorn.Server):
-    """Ends at a signal without raising it again afterwards: what follows is our own orderly end."""
-
-    @contextlib.contextmanager
-    def capture_signals(self) -> Iterator[None]:
-        loop = asyncio.get_running_loop()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            loop.add_signal_handler(number, self.handle_exit, number, None)
-        try:
-            yield
-        finally:
-            for number in (signal.SIGINT, signal.SIGTERM):
-                loop.remove_signal_handler(number)
-                # The end has begun; a second signal must not cut it short and leave a rig moving.
-                signal.signal(number, signal.SIG_IGN)

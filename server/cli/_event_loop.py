@@ -1,0 +1,80 @@
+"""The server's event loop: the app's lifespan, uvicorn on a socket that is bound already, and an orderly end."""
+
+import asyncio
+import contextlib
+import signal
+import socket
+import sys
+from collections.abc import Awaitable, Callable, Iterator
+
+import uvicorn
+
+from server.app import create_app
+from server.cli._exit import fail
+from server.client import ClientError
+from server.runtime.host import HostError
+from server.settings import Settings
+from server.store.errors import StoreError
+
+Ready = Callable[[str], Awaitable[None]]
+
+
+def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
+    """Serve on `listener` until SIGINT or SIGTERM; the address is the first line of stdout."""
+    try:
+        asyncio.run(_run(settings, listener, url, ready))
+    except StoreError as error:
+        fail(str(error))
+    except (HostError, ClientError) as error:
+        fail(str(error), 1)
+
+
+async def _run(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
+    app = create_app(settings)
+    config = uvicorn.Config(
+        app,
+        lifespan="off",  # ours, below: its errors are for the person at the terminal
+        log_config=None,
+        access_log=False,
+        ws_per_message_deflate=False,  # telemetry is small and frequent
+        timeout_graceful_shutdown=3,
+        server_header=False,
+    )
+    async with app.router.lifespan_context(app):
+        server = _Server(config)
+        serving = asyncio.create_task(server.serve(sockets=[listener]))
+        sys.stdout.write(f"{url}\n")
+        sys.stdout.flush()
+        beside = asyncio.create_task(_beside(ready, url, server))
+        await serving
+        beside.cancel()
+        results = await asyncio.gather(beside, return_exceptions=True)
+    for result in results:
+        if isinstance(result, Exception):
+            raise result
+
+
+async def _beside(ready: Ready, url: str, server: uvicorn.Server) -> None:
+    try:
+        await ready(url)
+    except Exception:
+        if not server.should_exit:  # at the end every connection of ours breaks off too
+            server.should_exit = True
+            raise
+
+
+class _Server(uvicorn.Server):
+    """Ends at a signal without raising it again afterwards: what follows is our own orderly end."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.add_signal_handler(number, self.handle_exit, number, None)
+        try:
+            yield
+        finally:
+            for number in (signal.SIGINT, signal.SIGTERM):
+                loop.remove_signal_handler(number)
+                # The end has begun; a second signal must not cut it short and leave a rig moving.
+                signal.signal(number, signal.SIG_IGN)
