@@ -66,6 +66,17 @@ def test_flight_from_upload_to_reset(page: Page, shots: Path) -> None:
     page.wait_for_timeout(2000)  # it brakes first
     console.give("reset", "idle")
 
+    # What was flown is on record.
+    page.get_by_role("navigation").get_by_role("link", name="Runs").click()
+    row = page.get_by_role("row").filter(has_text="vertical-4").first
+    expect(row).to_be_visible()
+    page.screenshot(path=shots / "runs-flown.png")
+    address = row.get_by_role("link", name="CSV").get_attribute("href")
+    assert address is not None
+    exported = page.request.get(address)
+    assert exported.ok
+    assert len(exported.text().splitlines()) > 5000  # every tick of more than five seconds at 1 kHz
+
 
 def test_scene_shows_the_rig_and_moves(page: Page, shots: Path) -> None:
     console = Console(page, "horizontal-4")
@@ -87,6 +98,7 @@ def test_who_only_watches_can_stop_but_not_command(page: Page, browser: Browser,
     flown = Console(page, "vertical-limited")
     flown.open()
     with browser.new_context(base_url=server.url) as other:
+        other.route("**/scene/**", lambda route: route.abort())  # two scenes are too much for software rendering
         watched = Console(other.new_page(), "vertical-limited")
         watched.open()
         flown.fly(FLIGHT)
@@ -109,6 +121,27 @@ def test_who_only_watches_can_stop_but_not_command(page: Page, browser: Browser,
     )
     flown.expect_state("armed")
     flown.give("disarm", "ready")
+
+
+def test_control_is_asked_for_and_handed_over(page: Page, browser: Browser, server: Server) -> None:
+    holder = Console(page, "horizontal-3")
+    holder.open()
+    holder.take_control()
+    with browser.new_context(base_url=server.url) as other:
+        other.route("**/scene/**", lambda route: route.abort())  # two scenes are too much for software rendering
+        asker = Console(other.new_page(), "horizontal-3")
+        asker.open()
+        asker.page.get_by_role("button", name="Ask for control").click()
+        expect(page.get_by_text("asks for control")).to_be_visible()
+        page.get_by_role("button", name="Hand over").click()
+        expect(asker.page.get_by_test_id("lease")).to_have_attribute("data-held", "true")
+        expect(page.get_by_test_id("lease")).to_have_attribute("data-held", "false")
+        asker.give("connect", "idle")
+        # A reload of the page keeps control.
+        asker.page.reload()
+        expect(asker.page.get_by_test_id("lease")).to_have_attribute("data-held", "true")
+        asker.page.get_by_role("button", name="Release").click()
+        expect(page.get_by_role("button", name="Take control")).to_be_visible()
 
 
 def test_stale_data_disables_motion_but_never_stop(page: Page, server: Server) -> None:

@@ -21,6 +21,74 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/compare": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Comparisons
+         * @description All comparisons, newest first, without their reports.
+         */
+        get: operations["list_comparisons_api_v1_compare_get"];
+        put?: never;
+        /**
+         * Add Comparison
+         * @description Ask for a comparison at the rig's own rate; poll it until its status is done, failed or cancelled.
+         */
+        post: operations["add_comparison_api_v1_compare_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/compare/{comparison}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Comparison
+         * @description One comparison, how far it is, and its report once it is done.
+         */
+        get: operations["get_comparison_api_v1_compare__comparison__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Remove Comparison
+         * @description Cancel a comparison that is being made (it stays, cancelled); remove one that is not.
+         */
+        delete: operations["remove_comparison_api_v1_compare__comparison__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/compare/{comparison}/page": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Comparison Page
+         * @description Table and plots as one self-contained HTML page.
+         */
+        get: operations["comparison_page_api_v1_compare__comparison__page_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/health": {
         parameters: {
             query?: never;
@@ -362,7 +430,7 @@ export interface paths {
         };
         /**
          * Export Run
-         * @description The whole run as a file.
+         * @description The whole run as a file: every sample of the record.
          */
         get: operations["export_run_api_v1_runs__run__export_get"];
         put?: never;
@@ -479,10 +547,10 @@ export interface components {
         /** AcknowledgeArgs */
         AcknowledgeArgs: {
             /**
-             * Alarms
-             * @description Numbers; null: all that stand
+             * Numbers
+             * @description Of alarms; null: all that stand
              */
-            alarms?: number[] | null;
+            numbers?: number[] | null;
         };
         /**
          * AlarmOut
@@ -529,13 +597,23 @@ export interface components {
         /** Arm */
         Arm: {
             /** @default {} */
-            args: components["schemas"]["NoArgs"];
+            args: components["schemas"]["ArmArgs"];
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             command: "arm";
             lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * ArmArgs
+         * @description The pair that the caller means to arm; refused where another one is loaded.
+         */
+        ArmArgs: {
+            /** Plan Hash */
+            plan_hash?: string | null;
+            /** Rig Hash */
+            rig_hash?: string | null;
         };
         /**
          * AuditOut
@@ -613,6 +691,85 @@ export interface components {
              */
             state_before: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
         };
+        /**
+         * CompareIn
+         * @description What to compare. Without `start_deg` every method starts at its own choice of pose.
+         */
+        CompareIn: {
+            /** Methods */
+            methods: string[];
+            /** Rig */
+            rig: string;
+            /** Start Deg */
+            start_deg?: [
+                number,
+                number,
+                number,
+                number
+            ] | null;
+            /** Trajectory */
+            trajectory: string;
+        };
+        /**
+         * ComparisonOut
+         * @description A comparison and its job; once it is done, its report and the path of its page.
+         */
+        ComparisonOut: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            error: components["schemas"]["JobErrorOut"] | null;
+            /** Id */
+            id: string;
+            /** Methods */
+            methods: string[];
+            /**
+             * Page
+             * @description Path of the page with table and plots
+             */
+            page: string | null;
+            progress: components["schemas"]["ProgressOut"];
+            /** Rate Hz */
+            rate_hz: number;
+            report: components["schemas"]["ComparisonReportOut"] | null;
+            /** Rig */
+            rig: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "done" | "failed" | "cancelled" | "interrupted";
+            /** Trajectory */
+            trajectory: string;
+            /** Trajectory Name */
+            trajectory_name: string;
+        };
+        /**
+         * ComparisonReportOut
+         * @description The report of `fullpose compare --report`, key by key; keys may be added, not renamed.
+         */
+        ComparisonReportOut: {
+            /** Duration S */
+            duration_s: number;
+            /** Exact Within Deg */
+            exact_within_deg: number;
+            /** Flight */
+            flight: string;
+            /** Geometry */
+            geometry: string;
+            /** Methods */
+            methods: components["schemas"]["MethodFiguresOut"][];
+            /** Resampling */
+            resampling: string | null;
+            /** Rig */
+            rig: string;
+            /** Samples */
+            samples: number;
+            /** Schema */
+            schema: string;
+        };
         /** Connect */
         Connect: {
             /** @default {} */
@@ -647,6 +804,20 @@ export interface components {
             lease?: components["schemas"]["LeaseToken"] | null;
         };
         /**
+         * FailureOut
+         * @description Samples that miss the attitude for one reason.
+         */
+        FailureOut: {
+            /** First S */
+            first_s: number;
+            /** Max Error Deg */
+            max_error_deg: number | null;
+            /** Reason */
+            reason: string;
+            /** Samples */
+            samples: number;
+        };
+        /**
          * FieldProblem
          * @description One thing wrong with a request: where, which value, what was expected.
          */
@@ -667,6 +838,15 @@ export interface components {
              * @description Path in the body, query or header, or the column of a file
              */
             where: string;
+        };
+        /**
+         * FrameMargins
+         * @description Null: no limit. deg, deg/s, deg/s^2.
+         */
+        FrameMargins: {
+            acceleration_deg_s2: components["schemas"]["MarginOut"] | null;
+            position_deg: components["schemas"]["MarginOut"] | null;
+            rate_deg_s: components["schemas"]["MarginOut"] | null;
         };
         /**
          * FrameOut
@@ -821,18 +1001,18 @@ export interface components {
             command: "jog";
             lease?: components["schemas"]["LeaseToken"] | null;
         };
-        /** JogArgs */
+        /**
+         * JogArgs
+         * @description One step of one frame, from where the rig is commanded to be.
+         */
         JogArgs: {
             /**
              * Frame
              * @enum {string}
              */
             frame: "base" | "outer" | "middle" | "inner";
-            /**
-             * Rate Deg S
-             * @description Zero stops the jog
-             */
-            rate_deg_s: number;
+            /** Step Deg */
+            step_deg: number;
         };
         /**
          * LeaseIn
@@ -915,6 +1095,88 @@ export interface components {
              * @description Id of a flyable plan of this rig
              */
             plan: string;
+        };
+        /**
+         * MarginOut
+         * @description The smallest distance to a limit, and when; negative beyond it.
+         */
+        MarginOut: {
+            /** Time S */
+            time_s: number;
+            /** Value */
+            value: number;
+        };
+        /**
+         * MarginsOut
+         * @description Of every frame; `singularity` is the smallest sin^2(outer) + cos^2(middle), zero at the rig's singularity.
+         */
+        MarginsOut: {
+            base?: components["schemas"]["FrameMargins"] | null;
+            inner: components["schemas"]["FrameMargins"];
+            middle: components["schemas"]["FrameMargins"];
+            outer: components["schemas"]["FrameMargins"];
+            singularity: components["schemas"]["MarginOut"] | null;
+        };
+        /**
+         * MethodFiguresOut
+         * @description One method: the keys of a solve's report and what sets it apart.
+         *
+         *     A method that does not apply to the rig has `refusal` and no figures.
+         */
+        MethodFiguresOut: {
+            blocking?: components["schemas"]["BlockingOut"] | null;
+            /** Claims Limits */
+            claims_limits: boolean;
+            /**
+             * Exact Share
+             * @description 0..1, of the samples
+             */
+            exact_share?: number | null;
+            /** Failures */
+            failures?: components["schemas"]["FailureOut"][] | null;
+            /** Feasible */
+            feasible?: boolean | null;
+            iterations?: components["schemas"]["IterationsOut"] | null;
+            /** Limit Violation Counts */
+            limit_violation_counts?: {
+                [key: string]: {
+                    [key: string]: number;
+                };
+            } | null;
+            /** Limit Violation Samples */
+            limit_violation_samples?: number | null;
+            /** Limit Violations */
+            limit_violations?: components["schemas"]["ViolationOut"][] | null;
+            /** Limited By */
+            limited_by?: {
+                [key: string]: string | number;
+            }[] | null;
+            /** Limited Samples */
+            limited_samples?: number | null;
+            /** Max Error Deg */
+            max_error_deg?: number | null;
+            /** Max Matrix Error */
+            max_matrix_error?: number | null;
+            /** Method */
+            method: string;
+            peak?: components["schemas"]["PeaksOut"] | null;
+            /** Refusal */
+            refusal: string | null;
+            /** Rig */
+            rig?: string | null;
+            /** Rms Error Deg */
+            rms_error_deg?: number | null;
+            /** Samples */
+            samples?: number | null;
+            /** Solve S */
+            solve_s?: number | null;
+            /** Source */
+            source: string;
+            step_us?: components["schemas"]["StepTimeOut"] | null;
+            /** Total Variation Deg */
+            total_variation_deg?: {
+                [key: string]: number;
+            } | null;
         };
         /**
          * MethodOut
@@ -1112,6 +1374,7 @@ export interface components {
             lead_in_s: number | null;
             /** Lead Out S */
             lead_out_s: number | null;
+            margins: components["schemas"]["MarginsOut"] | null;
             /** Method */
             method: string;
             /** Options */
@@ -1155,6 +1418,11 @@ export interface components {
             trajectory: string;
             /** Trajectory Name */
             trajectory_name: string;
+            /**
+             * Verdict
+             * @description What the verdict rests on, in words
+             */
+            verdict: string | null;
         };
         /**
          * PlanRef
@@ -1465,7 +1733,7 @@ export interface components {
         };
         /**
          * RunOut
-         * @description A recorded run.
+         * @description A recorded run; errors are those of the flight itself, running or held, leads left out.
          */
         RunOut: {
             /** Bytes */
@@ -1483,9 +1751,11 @@ export interface components {
             id: string;
             /**
              * Lost Samples
-             * @description Missing sequence numbers
+             * @description Sequence numbers that are missing
              */
-            lost_samples: number | null;
+            lost_samples: number;
+            /** Max Lateness Us */
+            max_lateness_us: number | null;
             /** Max Solve Error Deg */
             max_solve_error_deg: number | null;
             /** Max Tracking Error Deg */
@@ -1497,9 +1767,11 @@ export interface components {
             /** Rig */
             rig: string;
             /** Samples */
-            samples: number | null;
+            samples: number;
             /** Started At */
             started_at: string | null;
+            /** Who */
+            who: string;
         };
         /** ServerLimits */
         ServerLimits: {
@@ -2023,6 +2295,204 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["AuditOut"][];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_comparisons_api_v1_compare_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ComparisonOut"][];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    add_comparison_api_v1_compare_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CompareIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ComparisonOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_comparison_api_v1_compare__comparison__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                comparison: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ComparisonOut"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    remove_comparison_api_v1_compare__comparison__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                comparison: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    comparison_page_api_v1_compare__comparison__page_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                comparison: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": unknown;
+                };
+            };
+            /** @description The comparison is not done */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
                 };
             };
             /** @description Validation Error */

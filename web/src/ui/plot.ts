@@ -40,7 +40,10 @@ export function axis(colours: Ink, look: AxisLook = {}): uPlot.Axis {
   };
   if (look.size !== undefined) made.size = look.size;
   const splits = look.splits;
-  if (splits) made.splits = () => splits;
+  if (splits) {
+    made.splits = () => splits;
+    made.filter = (_plot, ticks) => ticks; // on a log axis uPlot would leave some out
+  }
   const text = look.text ?? plain;
   made.values = (_plot, ticks: (number | null)[]) => ticks.map((value) => (value === null ? null : text(value)));
   return made;
