@@ -11,6 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solver._jit import kernel
+from solver.limits import ACCELERATION, MAX, MIN, approach_rate, limit_box, limit_table
+from solver.methods import METHODS
 from solver.planner.basis import WIDTH, Basis, spline_basis
 from solver.planner.options import PlanOptions
 from solver.planner.programme import Answer, Equality, QuadraticProgramme, solve_programme
@@ -19,14 +22,19 @@ from solver.planner.rows import ROW, Flags, displaced, error_bands, limit_rows, 
 from solver.rig import Rig
 from solver.solution import EXACT, limited_code
 from solver.start import start_pose
+from solver.verify import attitude_errors, payload_attitudes
 
 Array = NDArray[np.float64]
 PADDING = 0.25  # [s] of the exact path given up on each side of a place outside the limits, at first
 ERROR_WEIGHT = 1e4  # [1/rad^2] beside rates and accelerations squared as shares of their limits
 SLACK_COST = 1e5  # of a limit exceeded by its whole: the limits win over the attitude
+LARGEST_PADDING = 4.0  # [s]; beyond it the whole flight starts again from a path inside the limits
+LONGEST = 60.0  # [s] of a flight whose frames are all set free at once
+EXACT_ERROR = 1e-12  # [rad] above which a sample counts as limited
 APART = 8  # samples of the exact path at least between two stretches
 TRUST = 0.5  # [rad] a frame moves in one iteration at most
 ITERATIONS = 25
+HOPELESS = 6  # iterations after which a stretch over a limit by its whole is given up
 
 
 @dataclass(frozen=True)
@@ -66,8 +74,11 @@ def least_error(
                     time[begin:end], attitude[begin:end], exact[begin:end], rig, options, (begin > 0, end < n),
                     start if begin == 0 else None,
                 )  # fmt: skip
-            inside = freed[begin, end][2] <= MET or (begin == 0 and end == n)
-            grown.append(stretch if inside else _Stretch(stretch.begin, stretch.end, 2.0 * stretch.padding))
+            if freed[begin, end][2] > MET:
+                if (begin == 0 and end == n) or stretch.padding >= LARGEST_PADDING:
+                    return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start), rig, options, start)
+                stretch = _Stretch(stretch.begin, stretch.end, 2.0 * stretch.padding)
+            grown.append(stretch)
         merged = _merged(grown, time)
         if merged == stretches:
             break
@@ -77,6 +88,58 @@ def least_error(
         part = slice(*stretch.range(time))
         x[part], limited[part], _ = freed[part.start, part.stop]
     return BestEffort(x, limited, worst(time, x, limits)[0])
+
+
+def feasible(time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None) -> Array:
+    """A path (n, 4) [rad] inside every limit, whatever its attitude error.
+
+    A four-axis rig's by the `exact` step method; a three-axis rig's by following `angles` frame by frame.
+    """
+    if rig.geometry.redundant:
+        method = METHODS["exact"]
+        return method.stepper(rig, method.options(), start, attitude[0]).block(time, attitude).angles
+    x = np.empty_like(angles)
+    follow(limit_table(rig), time, angles, x)
+    return x
+
+
+def from_feasible(
+    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None
+) -> BestEffort:
+    """The least error next to a path inside the limits; as it is where the flight is longer than `LONGEST`."""
+    n = len(time)
+    limits = rig_limits(rig)
+    error, _ = attitude_errors(payload_attitudes(rig, angles), attitude)
+    codes = np.full(n, limited_code(0, 1), np.int16)
+    x = angles
+    if n > 1 and time[-1] - time[0] <= LONGEST:
+        freed, codes, over = _free(time, attitude, angles, rig, options, (False, False), start)
+        after, _ = attitude_errors(payload_attitudes(rig, freed), attitude)
+        if over <= MET and float(np.mean(after**2)) < float(np.mean(error**2)):
+            x, error = freed, after
+    return BestEffort(x, np.where(error > EXACT_ERROR, codes, EXACT).astype(np.int16), worst(time, x, limits)[0])
+
+
+@kernel
+def follow(table: Array, time: Array, target: Array, x: Array) -> None:
+    """x (n, 4) <- a path inside the limits (`limit_table`) after target (n, 4) [rad]: each frame as fast as it can brake."""
+    n = time.shape[0]
+    v = np.zeros(4)
+    lo, hi = np.empty(4), np.empty(4)
+    lo_code, hi_code = np.empty(4, np.int16), np.empty(4, np.int16)
+    for i in range(4):
+        x[0, i] = min(max(target[0, i], table[MIN, i]), table[MAX, i])
+    past = 0.0
+    for k in range(1, n):
+        h = time[k] - time[k - 1]
+        limit_box(table, x[k - 1], v, past, h, lo, hi, lo_code, hi_code)
+        for i in range(4):
+            gap = target[k - 1, i] - x[k - 1, i]
+            speed = approach_rate(abs(gap), 0.5 * table[ACCELERATION, i], h)
+            wish = target[k, i] - target[k - 1, i] + (speed if gap > 0.0 else -speed) * h
+            x[k, i] = min(max(x[k - 1, i] + wish, lo[i]), hi[i])
+            v[i] = (x[k, i] - x[k - 1, i]) / h
+        past = h
 
 
 @dataclass(frozen=True)
@@ -125,7 +188,7 @@ def _free(
     ones = np.eye(4)
     trust = TRUST
     best: tuple[float, Array, Answer, NDArray[np.int64]] | None = None
-    for _ in range(ITERATIONS):
+    for iteration in range(ITERATIONS):
         problem, tag, _ = _programme(time, attitude, x, rig, limits, options, basis, stride, flags, trust, pinned, start)
         answer = solve_programme(problem)
         moved = np.empty_like(x)
@@ -153,6 +216,8 @@ def _free(
             trust *= 0.3
             if trust < 1e-6:
                 break
+        if iteration >= HOPELESS and worst(time, x, true_limits)[0] > 1.0:
+            break
     assert best is not None
     return best[1], _codes(n, best[2], best[3]), worst(time, best[1], true_limits)[0]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solver.planner.best_effort import BestEffort, least_error
+from solver.planner.best_effort import BestEffort, feasible, from_feasible, least_error
 from solver.planner.chain import Avoid, Chain, Programme
 from solver.planner.curve import polish
 from solver.planner.lead import lead_in, lead_out
@@ -23,6 +23,8 @@ from solver.start import start_pose
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
+STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a chain
+BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
 EXCESS = 100.0  # cost of going over a rate limit by its whole, for a flight without a chain
 AVOID_RADIUS = math.radians(30.0)
 AVOID_COST = 5.0  # [1/s], beside rates squared as shares of their limits
@@ -86,12 +88,15 @@ class _Search:
                 return chain
             self.counted |= outside
 
+    def curve(self, chain: Chain) -> Array:
+        """The smooth exact path along a chain (n, 4) [rad]."""
+        return smooth_curve(self.time, self.attitude, self.rig, self.samples, chain, self.start)
+
     def refine(self, chain: Chain) -> Path:
         """A path along a chain."""
         self.chains += 1
-        curve = smooth_curve(self.time, self.attitude, self.rig, self.samples, chain, self.start)
         return refine_path(
-            self.time, self.attitude, curve, self.rig, self.options, start=self.start is not None,
+            self.time, self.attitude, self.curve(chain), self.rig, self.options, start=self.start is not None,
             start_rate=self.start_rate, progress=self._report(0.5, 0.5),
         )  # fmt: skip
 
@@ -225,14 +230,17 @@ def _fly(search: _Search) -> _Flown:
 def _least_error(search: _Search) -> BestEffort:
     """For a flight without a chain: from the chain that is least over the limits, the least attitude error."""
     search.avoid.clear()
-    for stretch, slack in ((4.0, 0.0), (4.0, 0.5), (1e6, 0.5), (1e6, math.pi)):
-        chain = search.chain(search.options.grid, slack=slack, stretch=stretch, excess=EXCESS)
-        if chain.found:
+    time, attitude, rig, options = search.time, search.attitude, search.rig, search.options
+    for slack in (0.0, 0.5):
+        chain = search.chain(options.grid, slack=slack, stretch=STRETCH, excess=EXCESS)
+        if not chain.found:
+            continue
+        if overrun(time, search.curve(chain), rig)[0] > BROKEN:
             break
-    else:
-        chain = Chain(np.repeat(search.rig.home[None], len(search.samples), axis=0), math.inf, 0)
-    path = search.refine(chain)
-    return least_error(search.time, search.attitude, path.angles, search.rig, search.options, search.start)
+        path = search.refine(chain)
+        return least_error(time, attitude, path.angles, rig, options, search.start)
+    begin = feasible(time, attitude, np.empty((0, 4)), rig, search.start)
+    return from_feasible(time, attitude, begin, rig, options, search.start)
 
 
 STATEMENTS = {
