@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from server.drives.base import DriveError
 from server.runtime import orders, wire
+from server.runtime.live import LiveError
 from server.runtime.orders import OrderError
 from server.session.errors import SessionError
 from server.session.machine import Binding
@@ -112,6 +113,9 @@ class Desk:
                 loop.motion.go(move, Event.AT_START if command is Command.START else Event.THERE)
                 if command is Command.START:
                     loop.begin_run(request.who)
+            case Command.GO_LIVE:
+                self._decide(command, request, now)
+                loop.begin_run(request.who)
             case Command.ACKNOWLEDGE:
                 self._acknowledge(request, now)
             case _:
@@ -137,6 +141,11 @@ class Desk:
     def _load(self, request: wire.Request, now: float) -> None:
         loop = self._loop
         load = orders.load_of(request.args, loop.config)
+        if load.live is not None:
+            try:
+                loop.live.prepare(load.live)
+            except LiveError as cause:
+                raise OrderError("bad_arguments", str(cause)) from cause
         self._decide(Command.LOAD, request, now, load.binding)
         self.plan = load.plan
         if load.plan is not None:

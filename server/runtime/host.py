@@ -8,6 +8,7 @@ another, which comes up disconnected and carries the alarm.
 import asyncio
 import contextlib
 import os
+import socket
 import subprocess
 import sys
 import threading
@@ -199,6 +200,23 @@ class RigHost:
             if self.revision == revision:
                 await changed.wait()
         return self.revision
+
+    def live_socket(self) -> socket.socket:
+        """A connected, non-blocking datagram socket to the rig's live source: samples in and replies back.
+
+        For the WebSocket endpoint: `send(encode_sample(...))`, `recv(REPLY_SIZE)`; the caller closes it. Raises
+        `HostError` where the rig process is not there.
+        """
+        made = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
+        made.setblocking(False)
+        made.bind("")  # an abstract name of its own, so that replies find the way back
+        try:
+            with self._place.socket_address("live.sock") as address:
+                made.connect(address)
+        except OSError as cause:
+            made.close()
+            raise HostError(f"{self.name}: no live source socket ({cause})") from cause
+        return made
 
     # --- inside: process ---
 

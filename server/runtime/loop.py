@@ -21,7 +21,8 @@ from server.runtime.config import RigConfig
 from server.runtime.control import ControlServer
 from server.runtime.desk import Desk
 from server.runtime.guard import Finding, Guard
-from server.runtime.motion import Motion
+from server.runtime.live import LiveSource
+from server.runtime.motion import Mode, Motion
 from server.runtime.panel import Panel
 from server.runtime.place import Place
 from server.runtime.shared import Shared
@@ -82,6 +83,7 @@ class RigLoop:
         self._header = shared.header
         self.desk = Desk(self)
         self.panel = Panel(self)
+        self.live = LiveSource(config.rig, config.live, place, self.dt)
         self._control = ControlServer(place, self.desk.answer)
         self._header["period_ns"] = self.deadlines.period_ns
         if config.after_loss is not None:
@@ -96,6 +98,7 @@ class RigLoop:
             now_ns, lateness_ns, missed = self.deadlines.wait()
             self.tick(now_ns, lateness_ns, missed)
         self._control.close()
+        self.live.close()
         self.drive.disable()
         self.drive.close()
 
@@ -117,11 +120,13 @@ class RigLoop:
             self._judge_drive()
         error = self._judge_measured(now)
         self._judge_time(now, lateness_ns, missed)
+        self.live.poll(now)
         if self.ticks % 16 == 0:
             self._silences(now)
             self._judge_recorder(now)
         self._move(now)
-        self.panel.record(now_ns, lateness_ns, missed, error)
+        solved_deg = self.panel.record(now_ns, lateness_ns, missed, error)
+        self.live.reply(self.motion.x, solved_deg, self.guard.margin, time.monotonic())
         self.ticks += 1
         self._after(now, now_ns, lateness_ns)
 
@@ -144,6 +149,9 @@ class RigLoop:
                     self.motion.hold(True)
                 case Action.RESUME:
                     self.motion.hold(False)
+                case Action.GO_LIVE:
+                    self.live.begin(self.motion.x1, time.monotonic())
+                    self.motion.follow(self.live)
                 case Action.BRAKE:
                     self.motion.brake(fastest=False)
                 case Action.BRAKE_FASTEST:
@@ -160,6 +168,8 @@ class RigLoop:
                     self._disable_at_rest = False
         if Action.BRAKE_FASTEST in actions and not self.machine.moving:
             self._rest()
+        if self.machine.state is not State.LIVE:
+            self.live.end()
         if self.run_id is not None and self.machine.state not in IN_MOTION and not self.machine.moving:
             self.note("run_end", run_id=self.run_id, head=self.shared.ring.head, state=self.machine.state)
             self.run_id = None
@@ -281,6 +291,21 @@ class RigLoop:
             text = f"{free:.0f} MB free where runs are recorded"
             self.warn(Finding("disk_low", False, text, None, free, self.config.min_free_mb, "MB"))
 
+    def _judge_live(self) -> None:
+        live = self.live
+        found = self.guard.scalar("live_source_stale", live.last_age_ms, self.config.guard.stale_ms, "ms")
+        if found is not None and live.heard:
+            self.judge(found)
+        counts = live.counts
+        for word, told in (
+            ("bad", "are none"),
+            ("dropped", "came late or twice"),
+            ("clock_steps", "begin a new clock"),
+        ):
+            if counts[word]:
+                text = f"samples of the live source {told}: not used"
+                self.warn(Finding(f"live_{word}", False, text, None, math.nan, math.nan, ""))
+
     def _silences(self, now: float) -> None:
         owned = self.machine.state in IN_MOTION or self.machine.state is State.ARMED
         if not owned:
@@ -335,7 +360,11 @@ class RigLoop:
                     self._rest()
             return
         event = motion.tick()
+        if motion.mode is Mode.LIVE:
+            self._judge_live()
         if event is Event.SOURCE_LOST:
+            text = f"no sample of the live source for {self.live.last_age_ms:.0f} ms"
+            self.warn(Finding("live_source_lost", False, text, None, self.live.last_age_ms, math.nan, "ms"))
             self.report(event)
             event = motion.tick()
         found = self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)

@@ -73,8 +73,8 @@ class Panel:
         self._published = machine.revision
         self._published_at = now_ns / 1e9
 
-    def record(self, now_ns: int, lateness_ns: int, missed: int, error: float) -> None:
-        """Add the tick's row to the ring; `error` is the tracking error [rad]."""
+    def record(self, now_ns: int, lateness_ns: int, missed: int, error: float) -> float:
+        """Add the tick's row to the ring; `error` is the tracking error [rad]. Returns the solve error [deg]."""
         loop, row = self._loop, self._row
         motion, machine = loop.motion, loop.machine
         row["time_ns"] = now_ns
@@ -100,7 +100,8 @@ class Panel:
         np.multiply(loop.measured, _DEG, out=row["measured"][0])
         np.multiply(loop.measured_rate, _DEG, out=row["measured_rate"][0])
         row["target"] = motion.q
-        row["solve_error_deg"] = motion.solve_error(loop.rig.axes) * _DEG
+        solved = motion.solve_error(loop.rig.axes) * _DEG
+        row["solve_error_deg"] = solved
         row["tracking_error_deg"] = error * _DEG
         if loop.enabled:
             np.multiply(loop.guard.following, _DEG, out=row["following_error_deg"][0])
@@ -110,3 +111,4 @@ class Panel:
         row["lateness_us"] = lateness_ns / 1e3
         row["tick"] = loop.ticks
         loop.shared.ring.append(row)
+        return solved

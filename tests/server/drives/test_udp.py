@@ -120,6 +120,7 @@ def test_the_table_brakes_by_itself_when_the_controller_dies(tmp_path: Path) -> 
         time.sleep(0.6)  # nothing is sent: the controller is dead
         with log.open() as file:
             rows = [line.split() for line in file if line.endswith("\n")]
+        drive.close()
     measured = np.array([[float(n) for n in row] for row in rows])
     moving = np.abs(measured[:, 9]) > 25.0
     assert moving.sum() > 100

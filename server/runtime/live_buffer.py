@@ -1,0 +1,154 @@
+"""The live source's samples on the rig's clock: sorted, interpolated across jitter, extrapolated over short gaps.
+
+The source's clock is its own. The offset to ours is the smallest seen between arrival and time stamp (the quickest
+datagram is the least delayed one), let up slowly so that drifting clocks are followed. A sample stands for its time
+stamp plus that offset; the attitude flown is the one `delay` ago, so that jitter up to the delay is interpolated.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from server.runtime.live_packet import LiveSample
+from solver._jit import kernel
+
+Array = NDArray[np.float64]
+_KEPT = 64
+_DRIFT = 2e-4  # [s/s] of the offset, upward: more than two quartz clocks differ
+_STEP_S = 0.5  # a clock that jumps farther is a new clock
+
+
+@kernel
+def _turned(q: Array, rate: Array, dt: float, out: Array) -> None:
+    """out <- q after turning at the body rate [rad/s] for dt [s]; quaternions w, x, y, z, out of unit length."""
+    x, y, z = 0.5 * rate[0] * dt, 0.5 * rate[1] * dt, 0.5 * rate[2] * dt
+    half = math.sqrt(x * x + y * y + z * z)
+    s = math.sin(half) / half if half > 1e-12 else 1.0
+    c = math.cos(half)
+    x, y, z = s * x, s * y, s * z
+    w0, x0, y0, z0 = q[0], q[1], q[2], q[3]
+    out[0] = w0 * c - x0 * x - y0 * y - z0 * z
+    out[1] = w0 * x + x0 * c + y0 * z - z0 * y
+    out[2] = w0 * y - x0 * z + y0 * c + z0 * x
+    out[3] = w0 * z + x0 * y - y0 * x + z0 * c
+
+
+@kernel
+def _between(q0: Array, w0: Array, q1: Array, w1: Array, h: float, u: float, out: Array) -> None:
+    """out <- cubic Hermite between q0 and q1 (h [s] apart, same hemisphere, body rates w0, w1) at share u, unit."""
+    d0 = np.empty(4)
+    d1 = np.empty(4)
+    for q, w, d in ((q0, w0, d0), (q1, w1, d1)):
+        # q' = q (0, w) / 2
+        d[0] = 0.5 * (-q[1] * w[0] - q[2] * w[1] - q[3] * w[2])
+        d[1] = 0.5 * (q[0] * w[0] + q[2] * w[2] - q[3] * w[1])
+        d[2] = 0.5 * (q[0] * w[1] - q[1] * w[2] + q[3] * w[0])
+        d[3] = 0.5 * (q[0] * w[2] + q[1] * w[1] - q[2] * w[0])
+    a = 2 * u * u * u - 3 * u * u + 1
+    b = u * u * u - 2 * u * u + u
+    c = -2 * u * u * u + 3 * u * u
+    e = u * u * u - u * u
+    norm = 0.0
+    for k in range(4):
+        out[k] = a * q0[k] + b * h * d0[k] + c * q1[k] + e * h * d1[k]
+        norm += out[k] * out[k]
+    norm = math.sqrt(norm)
+    for k in range(4):
+        out[k] /= norm
+
+
+def _rate_between(q0: Array, q1: Array, h: float) -> Array:
+    """The constant body rate (3,) [rad/s] that turns q0 into q1 in h [s], the short way."""
+    w0, x0, y0, z0 = q0
+    w1, x1, y1, z1 = q1
+    # conj(q0) q1
+    w = w0 * w1 + x0 * x1 + y0 * y1 + z0 * z1
+    v = np.array(
+        [
+            w0 * x1 - x0 * w1 - y0 * z1 + z0 * y1,
+            w0 * y1 - y0 * w1 - z0 * x1 + x0 * z1,
+            w0 * z1 - z0 * w1 - x0 * y1 + y0 * x1,
+        ]
+    )
+    sine = float(np.linalg.norm(v))
+    if sine < 1e-12:
+        return np.zeros(3)
+    return np.asarray(v * (2.0 * math.atan2(sine, w) / (sine * h)))
+
+
+class LiveBuffer:
+    """The newest samples of one source. Times are ours [s, monotonic] unless said otherwise."""
+
+    def __init__(self, delay_s: float) -> None:
+        self._delay = delay_s
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the source."""
+        self._time = np.zeros(_KEPT)  # the source's [s]
+        self._q = np.zeros((_KEPT, 4))
+        self._rate = np.zeros((_KEPT, 3))
+        self._given = np.zeros(_KEPT, bool)  # the source gave the rate
+        self._count = 0
+        self._offset = math.inf
+        self._offset_at = 0.0
+        self._sequence = -1
+        self.accepted = self.dropped = self.steps = 0
+
+    def add(self, sample: LiveSample, now: float) -> bool:
+        """Take a sample that arrived at `now`; False where it is out of order or sent twice."""
+        offset = now - sample.time_s
+        if self._count and abs(offset - self._offset) > _STEP_S:
+            # The source began anew, or its clock was set: so do we, without believing the gap between.
+            steps = self.steps + 1
+            accepted, dropped = self.accepted, self.dropped
+            self.reset()
+            self.steps, self.accepted, self.dropped = steps, accepted, dropped
+        elif self._count and (sample.time_s <= self._time[0] or sample.sequence <= self._sequence):
+            self.dropped += 1
+            return False
+        drifted = self._offset + _DRIFT * (now - self._offset_at)
+        self._offset, self._offset_at = min(offset, drifted), now
+        self._sequence = sample.sequence
+        for rows in (self._time, self._q, self._rate, self._given):
+            rows[1:] = rows[:-1].copy()
+        self._time[0] = sample.time_s
+        self._q[0] = sample.quaternion
+        self._given[0] = sample.rate is not None
+        if sample.rate is not None:
+            self._rate[0] = sample.rate
+        if self._count:
+            if self._q[0] @ self._q[1] < 0.0:
+                self._q[0] *= -1.0
+            if not self._given[0]:
+                self._rate[0] = _rate_between(self._q[1], self._q[0], self._time[0] - self._time[1])
+        elif not self._given[0]:
+            self._rate[0] = 0.0
+        self._count = min(self._count + 1, _KEPT)
+        self.accepted += 1
+        return True
+
+    def age(self, now: float) -> float:
+        """How far the flown instant lies beyond the newest sample [s]; negative while it can be interpolated."""
+        return math.inf if not self._count else now - self._delay - self._offset - float(self._time[0])
+
+    def at(self, now: float, q: Array) -> bool:
+        """q (4,) <- the attitude to fly at `now`; False before the first sample."""
+        if not self._count:
+            return False
+        wanted = now - self._delay - self._offset  # on the source's clock
+        newest = self._time[0]
+        if wanted >= newest or self._count == 1:
+            _turned(self._q[0], self._rate[0], max(0.0, wanted - newest), q)
+            return True
+        k = 1
+        while k < self._count - 1 and self._time[k] > wanted:
+            k += 1
+        if wanted <= self._time[k]:
+            q[:] = self._q[k]  # older than all we keep: the source has only begun
+            return True
+        h = self._time[k - 1] - self._time[k]
+        share = (wanted - self._time[k]) / h
+        _between(self._q[k], self._rate[k], self._q[k - 1], self._rate[k - 1], h, share, q)
+        return True
