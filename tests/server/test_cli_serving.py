@@ -103,3 +103,20 @@ def test_a_setting_that_cannot_be(tmp_path: Path) -> None:
     _, errors = process.communicate(timeout=60)
     assert (process.returncode, errors.count("\n")) == (2, 1)
     assert "port" in errors
+
+
+def test_a_server_that_is_killed_leaves_its_rig_to_the_next_one(tmp_path: Path) -> None:
+    rig = "/rigs/vertical-4"
+    with running("serve", "--port", "0", "--data-dir", tmp_path) as (process, url):
+        with httpx.Client(base_url=f"{url}/api/v1", timeout=60.0, headers={"X-Fullpose-Client": "ann"}) as http:
+            lease = http.post(f"{rig}/lease").json()
+            token = {"epoch": lease["epoch"], "sequence": 1}
+            assert http.post(f"{rig}/commands", json={"command": "connect", "lease": token}).is_success
+            before = http.get(f"{rig}/session").json()
+        process.kill()
+        process.communicate(timeout=60)
+    with running("serve", "--port", "0", "--data-dir", tmp_path) as (process, url):
+        after = httpx.get(f"{url}/api/v1{rig}/session").json()
+    assert (after["state"], after["health"]["rig_pid"]) == ("idle", before["health"]["rig_pid"])
+    assert after["lease"]["epoch"] == before["lease"]["epoch"]
+    assert not Path(f"/proc/{before['health']['rig_pid']}").exists()

