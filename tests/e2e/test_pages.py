@@ -67,8 +67,10 @@ def visit(page: Page, name: str, rig: str) -> None:
     """Open a page by its link, and wait until it has drawn."""
     page.goto(f"/operate/{rig}")
     page.get_by_role("navigation").get_by_role("link", name=PAGES[name]).click()
-    heading = {"operate": "Flight"}.get(name, PAGES[name])
-    expect(page.get_by_role("heading", name=heading, exact=True)).to_be_visible()
+    if name == "operate":
+        expect(page.get_by_role("toolbar", name="Commands")).to_be_visible()
+    else:
+        expect(page.get_by_role("heading", name=PAGES[name], exact=True)).to_be_visible()
     page.wait_for_timeout(700)
 
 

@@ -39,7 +39,8 @@ class Operated {
   readonly session = $derived(this.link.session);
   readonly state = $derived(this.link.session?.state ?? null);
   readonly alarms = $derived(this.link.session?.alarms ?? []);
-  readonly unacknowledged = $derived(this.alarms.filter(({ acknowledged_by }) => !acknowledged_by).length);
+  readonly waiting = $derived(this.alarms.filter(({ acknowledged_by }) => !acknowledged_by));
+  readonly unacknowledged = $derived(this.waiting.length);
   /** Ours is the lease while we are its holder, in the epoch we were given. */
   readonly leased = $derived(this.#token !== null && holds(this.session, this.#token));
 
@@ -175,7 +176,7 @@ class Operated {
   async #ask(name: string, refusal: ApiError): Promise<void> {
     try {
       await api.lease(name, "request");
-      this.note("info", `${refusal.message}. Asked for it.`);
+      this.note("info", `${this.session?.lease.holder ?? "Another operator"} has control, and was asked for it.`);
     } catch {
       this.note("problem", messageOf(refusal));
     }
