@@ -12,7 +12,8 @@ class Library {
   trajectories: Trajectory[] = $state.raw([]);
   plans: Plan[] = $state.raw([]);
   methods: Method[] = $state.raw([]);
-  runs: Run[] = $state.raw([]);
+  /** Null until first read: a long record takes a while to be summed up. */
+  runs: Run[] | null = $state.raw(null);
   health: Health | null = $state.raw(null);
   problem: string | null = $state(null);
   /** Flight and plan the operator works with. */
