@@ -28,7 +28,7 @@ class UdpOptions:
     port: int = 7450
     local_port: int = 0
     connect_s: float = 1.0  # to wait for the first answer
-    link_lost_s: float = 0.1  # without an answer the link counts as lost
+    link_lost_s: float = 0.02  # without an answer the link counts as lost; longer looks like a following error first
 
 
 class UdpDrive:

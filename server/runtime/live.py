@@ -123,6 +123,7 @@ class LiveSource:
         self._waited = True
         self._C = np.empty((3, 3))
         self.stale = self.limited = False
+        self.acquired = False  # the source's attitude was reached once
         self.bad = 0
         self.last_age_ms = 0.0
         self._open(place)
@@ -158,6 +159,7 @@ class LiveSource:
         self._step.begin(pose)
         self._begun = now
         self._following = True
+        self.acquired = False
         self.stale = self.limited = False
 
     def end(self) -> None:
@@ -200,6 +202,7 @@ class LiveSource:
         attitude_of(q, self._C)
         angles, code = self._step.step(self._C)
         self.limited = code != 0
+        self.acquired = self.acquired or not self.limited
         x[:] = angles
         return True
 

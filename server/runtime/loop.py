@@ -259,6 +259,8 @@ class RigLoop:
         if not self.enabled or self.drive_brakes:
             return math.nan
         error, found = self.guard.measured(self.measured, motion.x1, motion.q1)
+        if found is not None and found.code == "attitude_error" and motion.mode is Mode.LIVE and not self.live.acquired:
+            found = None  # still on the way from where the rig stood to where the source is
         if found is not None:
             if found.trips and found.code == "following_error":
                 self._let_drive_brake(now)

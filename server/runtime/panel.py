@@ -81,7 +81,7 @@ class Panel:
         row["wall_ns"] = time.time_ns()
         row["state"] = machine.state.code
         flags = telemetry.LATE if missed else 0
-        flags |= telemetry.ENABLED if loop.enabled else 0
+        flags |= telemetry.ENABLED if loop.enabled and not loop.drive_brakes else 0
         if motion.mode is Mode.BRAKE or loop.drive_brakes or loop.status & Status.BRAKING:
             flags |= telemetry.BRAKING
         if motion.mode is Mode.PATH and math.isnan(motion.q[0]):

@@ -68,7 +68,7 @@ SAMPLE = np.dtype(
 LATE = 1  # the deadline of this tick was missed
 LIMITED = 2  # the path's sample could not hold the attitude inside the limits
 LEAD = 4  # in the lead-in or lead-out: no flight attitude to follow
-ENABLED = 8  # the drive is enabled
+ENABLED = 8  # the drive is enabled and follows what is commanded
 BRAKING = 16  # the rig brakes, by command or by itself
 STALE = 32  # the live source is late; the target is extrapolated
 

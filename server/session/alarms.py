@@ -55,9 +55,10 @@ class AlarmBook:
         limit: float | None = None,
         unit: str | None = None,
     ) -> "AlarmBook":
-        """The book with this alarm standing. The same code on the same frame again only counts up."""
+        """The book with this alarm standing. The same again (code, frame, severity) only counts up."""
         for index, old in enumerate(self.standing):
-            if (old.code, old.frame) == (code, frame) and old.acknowledged_by is None:
+            same = (old.code, old.frame, old.severity) == (code, frame, severity)
+            if same and old.acknowledged_by is None:
                 again = replace(old, count=old.count + 1)
                 return replace(self, standing=(*self.standing[:index], again, *self.standing[index + 1 :]))
         latching = severity is not Severity.WARNING

@@ -172,7 +172,8 @@ class SessionMachine:
         """Raise an alarm (latched first-out); the state is not touched: report the `Event` as well."""
         self.alarms = self.alarms.raised(code, severity, message, time_s, frame, value, limit, unit)
         self.revision += 1
-        return next(a for a in reversed(self.alarms.standing) if (a.code, a.frame) == (code, frame))
+        wanted = (code, frame, severity)
+        return next(a for a in reversed(self.alarms.standing) if (a.code, a.frame, a.severity) == wanted)
 
     def lease_action(self, action: str, who: str, now: float, to: str | None = None) -> Lease:
         """take, takeover (by force), release, renew, request, grant. Raises `LeaseError` or `SessionError`."""

@@ -14,6 +14,9 @@ def test_the_same_again_only_counts() -> None:
     book = AlarmBook().raised("a", Severity.FAULT, "", 0.0, frame="base").raised("a", Severity.FAULT, "", 1.0, "base")
     assert [(a.count, a.time_s) for a in book.standing] == [(2, 0.0)]
     assert len(book.raised("a", Severity.FAULT, "", 1.0, frame="outer").standing) == 2
+    # A warning that turns into a fault is a new alarm: it latches.
+    warned = AlarmBook().raised("a", Severity.WARNING, "", 0.0).raised("a", Severity.FAULT, "", 1.0)
+    assert [a.first for a in warned.standing] == [False, True]
 
 
 def test_acknowledged_warnings_leave_and_faults_wait_for_the_reset() -> None:

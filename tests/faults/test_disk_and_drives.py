@@ -1,0 +1,191 @@
+"""A full disk, and drives that fail in flight: limits kept, the cause named, the record readable."""
+
+import asyncio
+import contextlib
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from server.plan_folder import PlanFolder, PlanInfo, plan_hash
+from server.runtime.config import GuardConfig, Tolerance
+from server.runtime.replay import is_whole, read_events, read_samples, repair
+from server.session.states import STATES
+from tests.server.drives.test_udp import emulator
+from tests.server.runtime.rigs import config_of, hosted, plan_of, written
+from tests.server.runtime.test_host import within_limits
+
+
+@contextlib.contextmanager
+def small_disk(folder: Path, kilobytes: int) -> Iterator[Path]:
+    """A file system of this size, really full when it is full; skips where mounting is not allowed."""
+    folder.mkdir()
+    mounted = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", str(folder)], capture_output=True, check=False
+    )
+    if mounted.returncode:
+        pytest.skip("mounting a tmpfs is not allowed here")
+    try:
+        yield folder
+    finally:
+        subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def test_a_disk_that_fills_up_in_flight_costs_the_record_and_not_the_flight(tmp_path: Path) -> None:
+    async def fly(runs: Path) -> None:
+        import dataclasses
+
+        config = dataclasses.replace(config_of(tmp_path, min_free_mb=0.2), runs=runs)
+        plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
+        async with hosted(config) as (host, operator):
+            await operator.arm(plan)
+            await operator.must("start")
+            await operator.until("running")
+            snapshot = await operator.until("armed", "faulted")
+            assert snapshot.state == "armed"
+            codes = [a.code for a in snapshot.alarms]
+            assert "record_error" in codes
+            (full,) = (a for a in snapshot.alarms if a.code == "record_error")
+            assert "No space left" in full.message
+            rows, lost = host.samples(0, 1 << 20)
+            assert lost == 0
+            within_limits(rows, host)
+            await operator.must("disarm")
+            await asyncio.sleep(1.2)
+            refused = await operator.say("arm")
+            assert refused.error is not None
+            assert refused.error.code == "disk_full"
+        (record,) = runs.iterdir()  # noqa: ASYNC240
+        assert not is_whole(record)
+        kept = read_samples(record)
+        assert len(kept) > 1000
+        assert (np.diff(kept["seq"].astype(int)) == 1).all()
+        whole = tmp_path / "whole.mcap"
+        assert repair(record, whole) >= len(kept)
+        assert is_whole(whole)
+        np.testing.assert_array_equal(read_samples(whole)["seq"], kept["seq"])
+
+    with small_disk(tmp_path / "disk", 1024) as runs:
+        asyncio.run(fly(runs))
+
+
+# A table on a starved machine lags by tens of milliseconds; what is tested here is the link.
+WIDE = GuardConfig(following_deg=Tolerance(None, 45.0), attitude_deg=Tolerance(None, None))
+
+
+def drive_fault(kind: str, frame: str | None, at_s: float = 4.5) -> dict[str, Any]:
+    return {"faults": [{"kind": kind, "frame": frame, "at_s": at_s}]}
+
+
+@pytest.mark.parametrize(
+    ("kind", "frame", "code", "state"),
+    [
+        ("stuck", "middle", "following_error", "faulted"),
+        ("runaway", "inner", "following_error", "faulted"),
+        ("encoder", "outer", "drive_encoder", "faulted"),
+        ("link", None, "link_lost", "disconnected"),
+    ],
+)
+def test_a_failing_drive_is_named_and_the_rig_brakes(
+    tmp_path: Path, kind: str, frame: str | None, code: str, state: str
+) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path, drive_options=drive_fault(kind, frame))
+        plan = written(tmp_path / "plan", plan_of(config.rig, 8.0))
+        async with hosted(config) as (host, operator):
+            await operator.arm(plan)
+            await operator.must("start")
+            snapshot = await operator.until("faulted", "disconnected", "armed")
+            assert snapshot.state == state, snapshot.alarms
+            first = next(a for a in snapshot.alarms if a.first)
+            assert (first.code, first.frame) == (code, frame)
+            within_limits(host.samples(0, 1 << 20)[0], host)
+            await asyncio.sleep(1.5)
+            if state == "faulted":
+                newest = host.latest()
+                assert newest is not None
+                moving = np.abs(newest["measured_rate"][0])
+                if frame is not None and kind == "runaway":
+                    moving[["base", "outer", "middle", "inner"].index(frame)] = 0.0  # its brake is what failed
+                assert moving.max() < 1.0
+        (record,) = (tmp_path / "runs").iterdir()
+        assert code in [e.get("code") for e in read_events(record) if e["kind"] == "alarm"]
+        assert is_whole(record)
+
+    asyncio.run(fly())
+
+
+def test_a_jump_in_a_plan_is_caught_before_it_is_written(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        sound = plan_of(config.rig, 4.0)
+        angles = np.array(sound.angles)
+        angles[3000:, 2] += np.radians(2.0)
+        digest = plan_hash(angles, sound.target, sound.error)
+        info = PlanInfo(**{**vars(sound.info), "plan_hash": digest})
+        folder = written(tmp_path / "plan", PlanFolder(info, angles, sound.target, sound.error))
+        async with hosted(config) as (host, operator):
+            await operator.arm(folder)
+            await operator.must("start")
+            snapshot = await operator.until("faulted", "armed")
+            (alarm,) = snapshot.alarms
+            assert (alarm.code, alarm.frame, alarm.first) == ("guard_rate", "middle", True)
+            assert alarm.value is not None
+            assert alarm.limit is not None
+            assert abs(alarm.value) > abs(alarm.limit)
+            rows, _ = host.samples(0, 1 << 20)
+            within_limits(rows, host)
+            assert rows["state"][-1] == STATES.index("faulted")
+
+    asyncio.run(fly())
+
+
+def test_a_table_that_vanishes_is_a_lost_link_and_can_be_connected_again(tmp_path: Path) -> None:
+    async def fly() -> None:
+        with emulator("--rig", "vertical-4", "--watchdog", "1.0") as port:
+            options = {"port": port, "link_lost_s": 0.3}
+            config = config_of(tmp_path, rig="vertical-4", drive="udp", drive_options=options, guard=WIDE)
+            plan = written(tmp_path / "plan", plan_of(config.rig, 8.0, swing=0.5))
+            async with hosted(config) as (host, operator):
+                await operator.arm(plan)
+                await operator.must("start")
+                await operator.until("running")
+                await asyncio.sleep(1.0)
+                os.kill(_child_on(port), 9)
+                snapshot = await operator.until("disconnected", "armed", "faulted")
+                assert snapshot.state == "disconnected", snapshot.alarms
+                assert "link_lost" in [a.code for a in snapshot.alarms]
+                gone = await operator.say("connect")
+                assert gone.error is not None
+                assert gone.error.code == "drive_unreachable"
+                again = subprocess.Popen(  # noqa: ASYNC220
+                    [sys.executable, "-m", "server.drives.table_emulator", "--port", str(port), "--seconds", "60"],
+                    stdout=subprocess.PIPE,
+                )
+                assert again.stdout is not None
+                try:
+                    again.stdout.readline()
+                    await operator.must("connect")
+                finally:
+                    again.kill()
+                    again.wait()
+                    again.stdout.close()
+                within_limits(host.samples(0, 1 << 20)[0], host)
+
+    asyncio.run(fly())
+
+
+def _child_on(port: int) -> int:
+    """The pid of this process's child that is bound to a UDP port."""
+    for entry in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            fields = entry.read_text().rsplit(")", 1)[1].split()
+            command = entry.with_name("cmdline").read_bytes()
+            if int(fields[1]) == os.getpid() and b"table_emulator" in command and fields[0] != "Z":
+                return int(entry.parent.name)
+    raise AssertionError(f"no emulator on port {port}")
