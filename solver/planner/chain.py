@@ -253,6 +253,8 @@ class Programme:
         self.excess = 0.0
         self.margin_gain = 1.0
         self.avoid: list[Avoid] = []
+        self.motion: tuple[Array, Array] | None = None  # pose and rates (4,) at the first stage: what inertia allows
+        self.room_cost = 0.0  # on ranges nearly used up at the last stage, for a flight that goes on after it
 
     def nodes(self, stage: int) -> tuple[Array, Array, NDArray[np.bool_]]:
         """(position (4G, 4), cost (4G,), alive (4G,)) of a stage."""
@@ -278,7 +280,24 @@ class Programme:
                 cost += place.cost * near
         dt = self.time[min(stage + 1, len(self.time) - 1)] - self.time[max(stage - 1, 0)]
         cost *= 0.5 * dt if len(self.time) > 1 else 1.0
+        if self.motion is not None:
+            alive &= self._within_inertia(stage, position)
+        if self.room_cost and stage == len(self.time) - 1:
+            finite = np.isfinite(self.grid.high)
+            middle = 0.5 * (self.grid.low[finite] + self.grid.high[finite])
+            used = (position[:, finite] - middle) / (self.grid.high[finite] - middle)
+            cost += self.room_cost * (used**4).sum(axis=1)
         return position, cost, alive
+
+    def _within_inertia(self, stage: int, position: Array) -> NDArray[np.bool_]:
+        """The nodes (4G,) that the accelerations let the frames reach from the first stage's pose and rates."""
+        assert self.motion is not None
+        pose, rate = self.motion
+        t = self.time[stage] - self.time[0]
+        gap = position - (pose + rate * t)
+        gap -= np.where(self.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
+        reach = 0.5 * np.minimum(self.rig.max_acceleration, 1e6) * t * t + 1.5 * self.grid.step + self.slack
+        return np.asarray((np.abs(gap) <= reach).all(axis=1))
 
     def run(self, start: Array | None = None, progress: Progress | None = None) -> Chain:
         """The cheapest chain from the nodes next to `start` (4,) [rad], or from any."""

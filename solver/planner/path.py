@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solver._jit import kernel
 from solver.planner.chain import Chain
 from solver.planner.curve import closest_all, smoothed, spline_rows, spline_slopes
 from solver.planner.options import PlanOptions
@@ -52,27 +53,37 @@ def smooth_curve(
         closest_all(rig.axes, rig.geometry.horizontal, attitude, d)
         return d
     spacing = float(np.diff(knots).mean())
-    step = np.minimum(rig.max_rate, 100.0)[None, :] * np.diff(time)[:, None]
+    fastest = JUMP * np.minimum(rig.max_rate, 100.0)
     for stiffness in STIFFNESS:
         y = smoothed(points, stiffness * min(1.0, (0.05 / spacing) ** 4))
         if start is not None:
             y[0] = start
         spline_rows(knots, y, spline_slopes(knots, y), time, d)
         closest_all(rig.axes, rig.geometry.horizontal, attitude, d)
-        if float((np.abs(np.diff(d, axis=0)) / step).max()) < JUMP:
+        if not jumps(time, d, fastest):
             break
     if start is not None:
         d[0] = start
     return d
 
 
+@kernel
+def jumps(time: Array, d: Array, fastest: Array) -> bool:
+    """Whether any frame of d (n, 4) [rad] is anywhere faster than `fastest` (4,) [rad/s]."""
+    for k in range(1, time.shape[0]):
+        for i in range(4):
+            if abs(d[k, i] - d[k - 1, i]) > fastest[i] * (time[k] - time[k - 1]):
+                return True
+    return False
+
+
 def refine_path(
     time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, *,
     start: bool = False, start_rate: Array | None = None, progress: Progress | None = None,
 ) -> Path:  # fmt: skip
-    """Refine an exact path (n, 4) [rad], window by window where it is long. `progress` in samples."""
+    """Refine an exact path (n, 4) [rad] in place, window by window where it is long. `progress` in samples."""
     n = len(time)
-    d = angles.copy()
+    d = angles  # in place: an hour's path is not held twice
     iterations = np.zeros(n, np.int32)
     failures: list[Refined] = []
     begin = 0

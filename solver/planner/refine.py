@@ -20,6 +20,7 @@ from solver.planner.rows import ROW, Flags, cost_bands, difference, displaced, f
 from solver.rig import Rig
 
 Array = NDArray[np.float64]
+CHUNK = 1 << 17  # samples looked at together
 MET = 1e-7  # of a limit: over it by less counts as inside
 OVERRUN = 1e3  # merit of a limit exceeded by its whole; costs are about one a second at most
 NEAR = 0.6  # share of a limit from which its rows are in the programme at once
@@ -63,11 +64,19 @@ class Refined:
 
 def worst(time: Array, angles: Array, limits: Limits, last: int | None = None) -> tuple[float, int, int, int]:
     """(overrun, sample, frame, limit) of the sample farthest outside, among the first `last`."""
-    over = np.empty((len(time), 3))
-    frame = np.empty((len(time), 3), np.int8)
-    over_limits(time, angles, limits.low, limits.high, limits.rate, limits.acceleration, over, frame)
-    k, kind = np.unravel_index(np.argmax(over[:last]), over[:last].shape)
-    return float(over[k, kind]), int(k), int(frame[k, kind]), int(kind)
+    n = len(time) if last is None else min(last, len(time))
+    best = (-np.inf, 0, 0, 0)
+    for begin in range(0, n, CHUNK):
+        end = min(n, begin + CHUNK)
+        part = slice(max(0, begin - 1), end + 1)
+        over = np.empty((len(time[part]), 3))
+        frame = np.empty((len(time[part]), 3), np.int8)
+        over_limits(time[part], angles[part], limits.low, limits.high, limits.rate, limits.acceleration, over, frame)
+        own = over[begin - part.start : end - part.start]
+        k, kind = np.unravel_index(np.argmax(own), own.shape)
+        if own[k, kind] > best[0]:
+            best = float(own[k, kind]), begin + int(k), int(frame[begin - part.start + k, kind]), int(kind)
+    return best
 
 
 def refine(

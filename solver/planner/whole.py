@@ -73,6 +73,8 @@ class _Search:
             )  # fmt: skip
             programme.avoid = self.avoid
             programme.margin_gain = self.margin_gain
+            if self.start is not None and self.start_rate is not None:
+                programme.motion = self.start, self.start_rate
             programme.stretch, programme.excess = stretch, excess
             chain = programme.run(self.start, self._report(0.0, 0.5))
             if not chain.found:
