@@ -9,20 +9,17 @@ import asyncio
 import contextlib
 import os
 import socket
-import subprocess
-import sys
 import threading
 import time
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-import server
-from server.runtime import config as configs
 from server.runtime import wire
 from server.runtime.config import RigConfig
+from server.runtime.launch import HostError as HostError
+from server.runtime.launch import Launcher
 from server.runtime.link import ControlLink, RigUnreachableError
 from server.runtime.place import Place
 from server.runtime.shared import Shared, SharedError
@@ -31,18 +28,12 @@ from server.session.lease import Lease, LeaseToken
 from server.session.states import Command, State
 from server.session.table import allowed
 
-START_S = 20.0
 REPLY_S = 5.0
 _END_S = 15.0
 POLL_S = 0.005
 BEAT_S = 0.05
 SILENT_S = 0.15  # a rig heartbeat older than this counts as not responding
-_ROOT = str(Path(server.__file__).resolve().parent.parent)
 _RESPAWNS = 3  # in a minute; then a person must look
-
-
-class HostError(Exception):
-    """The rig process cannot be started; the message holds the end of its log."""
 
 
 class RefusedError(Exception):
@@ -65,7 +56,7 @@ class RigHost:
         self._place = Place(config.directory)
         self._shared: Shared | None = None
         self._link: ControlLink | None = None
-        self._child: subprocess.Popen[bytes] | None = None
+        self._launcher = Launcher(self._place)
         self._pid = 0
         self._pidfd = -1
         self._dead = True
@@ -86,7 +77,7 @@ class RigHost:
         pid = self._place.running()
         self.adopted = pid is not None
         if pid is None:
-            pid = await self._spawn(self.config)
+            pid = await self._launcher.spawn(self.config)
         await self._attach(pid)
         self._beat = threading.Thread(target=self._beat_on, name=f"heartbeat to {self.name}", daemon=True)
         self._beat.start()
@@ -220,33 +211,6 @@ class RigHost:
 
     # --- inside: process ---
 
-    async def _spawn(self, config: RigConfig) -> int:
-        self._place.notes.unlink(missing_ok=True)
-        self._place.config.write_bytes(configs.encode(config))
-        paths = [_ROOT, *filter(None, [os.environ.get("PYTHONPATH")])]
-        # One BLAS thread: its pool would be locked into memory, and nothing in the loop uses it.
-        env = os.environ | {"PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-        with self._place.log.open("ab") as log:
-            # A session of its own: a Ctrl-C at the server's terminal must not reach a moving rig.
-            self._child = subprocess.Popen(  # noqa: ASYNC220
-                [sys.executable, "-m", "server.runtime.process", "--config", str(self._place.config)],
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=log,
-                env=env,
-                start_new_session=True,
-            )
-        deadline = time.monotonic() + START_S
-        while time.monotonic() < deadline:
-            if self._child.poll() is not None:
-                raise HostError(f"the rig process of {self.name} ended at once:\n{self._log_end()}")
-            if self._place.running() == self._child.pid:
-                return self._child.pid
-            await asyncio.sleep(0.02)
-        self._child.kill()
-        self._child.wait()
-        raise HostError(f"the rig process of {self.name} was not ready within {START_S:g} s:\n{self._log_end()}")
-
     async def _attach(self, pid: int) -> None:
         link = ControlLink()
         try:
@@ -276,9 +240,7 @@ class RigHost:
         self._announce()
 
     def _ended(self) -> bool:
-        if self._child is not None and self._child.pid == self._pid:
-            return self._child.poll() is not None
-        return self._place.running() != self._pid
+        return self._launcher.status(self._pid) is not None or self._place.running() != self._pid
 
     async def _revive(self) -> None:
         """Start another process in place of the dead one, with the cause as its first alarm."""
@@ -289,13 +251,13 @@ class RigHost:
         self._respawned.append(now)
         last = self._published()
         how = ""
-        if self._child is not None and self._child.pid == self._pid:
-            code = self._child.wait()
+        code = self._launcher.status(self._pid)
+        if code is not None:
             how = f" (signal {-code})" if code < 0 else f" (exit status {code})"
         told = f"the rig process died{how} while {last.state}; the drive brakes by its own watchdog"
         await self._detach()
         last_revision = self.revision
-        pid = await self._spawn(replace(self.config, after_loss=told))
+        pid = await self._launcher.spawn(replace(self.config, after_loss=told))
         self._shared = None
         self._offset = last_revision + 1
         await self._attach(pid)
@@ -411,9 +373,6 @@ class RigHost:
                 error=_text(header["recorder_error"][0]),
             ),
         )
-
-    def _log_end(self) -> str:
-        return self._place.log.read_text("utf-8", "replace")[-2000:]
 
 
 def _text(value: np.bytes_) -> str:

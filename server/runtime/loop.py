@@ -14,27 +14,27 @@ from typing import Any
 
 import numpy as np
 
-from server.drives.base import Drive, Status
+from server.drives.base import Drive
 from server.plan_folder import rig_hash
 from server.runtime.clock import Deadlines
 from server.runtime.config import RigConfig
 from server.runtime.control import ControlServer
 from server.runtime.desk import Desk
 from server.runtime.guard import Finding, Guard
+from server.runtime.judge import Judge
 from server.runtime.live import LiveSource
 from server.runtime.motion import Mode, Motion
 from server.runtime.panel import Panel
 from server.runtime.place import Place
 from server.runtime.shared import Shared
 from server.session.alarms import Severity
-from server.session.machine import SessionMachine, Silence
+from server.session.machine import SessionMachine
 from server.session.states import IN_MOTION, Action, Command, Event, State
 
 _RAD = math.pi / 180.0
 _AT_REST = 0.5 * _RAD  # [rad/s] a table slower than this that brakes by itself counts as stopped
 _BRAKE_TIMEOUT_S = 5.0
 _COLLECT_S = 10.0
-_RECORDER_SILENT_S = 1.0
 
 
 class RigLoop:
@@ -72,17 +72,15 @@ class RigLoop:
         self._estop_unwritten = False
         self._start_recorder = start_recorder
         self._recorder = recorder
-        self._server_silence = Silence(config.server)
-        self._warned: set[tuple[str, str | None]] = set()
         self.status = 0
         self._sequence = 0
         self.ticks = 0
-        self._misses: list[float] = []
         self._collected = 0.0
         self._idle_since = time.monotonic()
         self._header = shared.header
         self.desk = Desk(self)
         self.panel = Panel(self)
+        self.judge = Judge(self)
         self.live = LiveSource(config.rig, config.live, place, self.dt)
         self._control = ControlServer(place, self.desk.answer)
         self._header["period_ns"] = self.deadlines.period_ns
@@ -117,13 +115,13 @@ class RigLoop:
             self._end_when_at_rest(now)
         self.status = self.drive.read(now, self.measured, self.measured_rate) if self.machine.linked else 0
         if self.machine.linked:
-            self._judge_drive()
-        error = self._judge_measured(now)
-        self._judge_time(now, lateness_ns, missed)
+            self.judge.drive()
+        error = self.judge.measured(now)
+        self.judge.lateness(now, lateness_ns, missed)
         self.live.poll(now)
         if self.ticks % 16 == 0:
-            self._silences(now)
-            self._judge_recorder(now)
+            self.judge.silences(now)
+            self.judge.recorder(now)
         self._move(now)
         solved_deg = self.panel.record(now_ns, lateness_ns, missed, error)
         self.live.reply(self.motion.x, solved_deg, self.guard.margin, time.monotonic())
@@ -162,9 +160,9 @@ class RigLoop:
                     self.power_off()
                 case Action.UNBIND:
                     self.motion.unload()
-                    self._warned.clear()
+                    self.judge.forget()
                 case Action.CLEAR:
-                    self._warned.clear()
+                    self.judge.forget()
                     self._disable_at_rest = False
         if Action.BRAKE_FASTEST in actions and not self.machine.moving:
             self._rest()
@@ -196,7 +194,7 @@ class RigLoop:
         if self.enabled and not self.drive_brakes and self.machine.moving:
             self.motion.brake(fastest=True)
 
-    def _let_drive_brake(self, now: float) -> None:
+    def let_drive_brake(self, now: float) -> None:
         """Commands cannot be trusted to reach the frames: the drive's own brakes must do it."""
         self.drive.brake()
         self.drive_brakes = True
@@ -216,8 +214,6 @@ class RigLoop:
         elif self.machine.state is not State.ESTOPPED:
             self.desk.lane(Command.ESTOP, "SIGTERM", now)
 
-    # --- judging ---
-
     def _lanes(self, now: float) -> None:
         header = self._header
         for lane, command in (("estop", Command.ESTOP), ("stop", Command.STOP)):
@@ -228,125 +224,6 @@ class RigLoop:
             self.desk.lane(command, who, now)
             header[f"{lane}_done_ns"] = asked
             self._estop_unwritten = lane == "estop" or self._estop_unwritten
-
-    def _judge_drive(self) -> None:
-        status = self.status
-        now = time.monotonic()
-        if status & Status.LINK_LOST:
-            self.enabled = self.drive_brakes = False
-            self.alarm("link_lost", Severity.FAULT, f"drive {self.drive.name}: link lost; the drive brakes by itself")
-            self.report(Event.LINK_LOST)
-            self.drive.close()
-        elif self.enabled and not self.drive_brakes and status & (Status.FAULT | Status.ENCODER | Status.WATCHDOG):
-            word = "encoder" if status & Status.ENCODER else "watchdog" if status & Status.WATCHDOG else "fault"
-            frame = None
-            lost = np.flatnonzero(~np.isfinite(self.measured))
-            if len(lost):
-                frame = ("base", "outer", "middle", "inner")[int(lost[0])]
-            told = {
-                "encoder": f"{frame} frame: no position from its encoder",
-                "watchdog": "no command reached the drive in time: it brakes by itself",
-                "fault": "the drive reports a fault",
-            }[word]
-            self._let_drive_brake(now)
-            self.trip(Finding(f"drive_{word}", True, told, frame, math.nan, math.nan, ""))
-        elif self.enabled and status & Status.STALE_WRITE:
-            self.warn(Finding("stale_write", False, "the drive refused an old command", None, math.nan, math.nan, ""))
-
-    def _judge_measured(self, now: float) -> float:
-        """The tracking error [rad]; nan where nothing is followed."""
-        motion = self.motion
-        if not self.enabled or self.drive_brakes:
-            return math.nan
-        error, found = self.guard.measured(self.measured, motion.x1, motion.q1)
-        if found is not None and found.code == "attitude_error" and motion.mode is Mode.LIVE and not self.live.acquired:
-            found = None  # still on the way from where the rig stood to where the source is
-        if found is not None:
-            if found.trips and found.code == "following_error":
-                self._let_drive_brake(now)
-            self.judge(found)
-        return error
-
-    def _judge_time(self, now: float, lateness_ns: int, missed: int) -> None:
-        if missed:
-            self._header["misses"] += missed
-            self._misses = [t for t in self._misses if now - t < 1.0] + [now] * min(missed, 5000)
-            if self.enabled and self.machine.moving:
-                found = self.guard.scalar("lateness", lateness_ns / 1e6, self.config.guard.lateness_ms, "ms")
-                count = float(len(self._misses))
-                found = found or self.guard.scalar("missed_deadlines", count, self.config.guard.misses_per_s, "in 1 s")
-                if found is not None:
-                    self.judge(found)
-
-    def _judge_recorder(self, now: float) -> None:
-        """A run goes on without its record, but not unsaid."""
-        if self.run_id is None:
-            return
-        header = self._header
-        error = bytes(header["recorder_error"][0])
-        free = int(header["recorder_free_bytes"][0]) / 1e6
-        if now - int(header["recorder_beat_ns"][0]) / 1e9 > _RECORDER_SILENT_S:
-            self.warn(Finding("recorder_lost", False, "the recorder does not run", None, math.nan, math.nan, ""))
-        if error:
-            self.warn(Finding("record_error", False, error.decode("utf-8", "replace"), None, math.nan, math.nan, ""))
-        if 0 < free < self.config.min_free_mb:
-            text = f"{free:.0f} MB free where runs are recorded"
-            self.warn(Finding("disk_low", False, text, None, free, self.config.min_free_mb, "MB"))
-
-    def _judge_live(self) -> None:
-        live = self.live
-        found = self.guard.scalar("live_source_stale", live.last_age_ms, self.config.guard.stale_ms, "ms")
-        if found is not None and live.heard:
-            self.judge(found)
-        counts = live.counts
-        for word, told in (
-            ("bad", "are none"),
-            ("dropped", "came late or twice"),
-            ("clock_steps", "begin a new clock"),
-        ):
-            if counts[word]:
-                text = f"samples of the live source {told}: not used"
-                self.warn(Finding(f"live_{word}", False, text, None, math.nan, math.nan, ""))
-
-    def _silences(self, now: float) -> None:
-        owned = self.machine.state in IN_MOTION or self.machine.state is State.ARMED
-        if not owned:
-            return
-        for event in self.machine.silence(now):
-            self._silent("owner_silent", "the lease's holder is silent", event)
-        beat = int(self._header["server_beat_ns"][0]) / 1e9
-        for event in self._server_silence.due(now - beat):
-            self._silent("server_silent", "the server is silent", event)
-
-    def _silent(self, code: str, told: str, event: Event) -> None:
-        before = self.machine.state
-        self.report(event)
-        if self.machine.state is not before:
-            self.alarm(code, Severity.WARNING, f"{told}: {before} -> {self.machine.state}")
-
-    def judge(self, found: Finding) -> None:
-        """A finding of the guard: brake, or warn."""
-        if found.trips:
-            self.trip(found)
-        else:
-            self.warn(found)
-
-    def trip(self, found: Finding) -> None:
-        """Latch the fault and brake."""
-        self._raise(found, Severity.FAULT)
-        self.report(Event.FAULT)
-
-    def warn(self, found: Finding) -> None:
-        """Raise a warning, once until a reset or unload."""
-        if (found.code, found.frame) not in self._warned:
-            self._warned.add((found.code, found.frame))
-            self._raise(found, Severity.WARNING)
-
-    def _raise(self, found: Finding, severity: Severity) -> None:
-        value = found.value if math.isfinite(found.value) else None
-        limit = found.limit if math.isfinite(found.limit) else None
-        unit = found.unit or None
-        self.alarm(found.code, severity, found.message, frame=found.frame, value=value, limit=limit, unit=unit)
 
     # --- moving ---
 
@@ -363,17 +240,17 @@ class RigLoop:
             return
         event = motion.tick()
         if motion.mode is Mode.LIVE:
-            self._judge_live()
+            self.judge.live()
         if event is Event.SOURCE_LOST:
             text = f"no sample of the live source for {self.live.last_age_ms:.0f} ms"
-            self.warn(Finding("live_source_lost", False, text, None, self.live.last_age_ms, math.nan, "ms"))
+            self.judge.warn(Finding("live_source_lost", False, text, None, self.live.last_age_ms, math.nan, "ms"))
             self.report(event)
             event = motion.tick()
         found = self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)
         if found is not None:
             event = None
             motion.brake(fastest=True)
-            self.trip(found)
+            self.judge.trip(found)
             if motion.tick() is Event.AT_REST:
                 event = Event.AT_REST
             self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)

@@ -1,0 +1,166 @@
+"""Judging what the rig, its clock, its recorder and its people did: warn, or latch a fault and brake."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from server.drives.base import Status
+from server.runtime.guard import Finding
+from server.runtime.motion import Mode
+from server.session.alarms import Severity
+from server.session.machine import Silence
+from server.session.states import IN_MOTION, Event, State
+from solver.rig import FRAMES
+
+if TYPE_CHECKING:
+    from server.runtime.loop import RigLoop
+
+_RECORDER_SILENT_S = 1.0
+
+
+class Judge:
+    """Judges for one loop. Each method looks at one thing, once a tick or less."""
+
+    def __init__(self, loop: RigLoop) -> None:
+        self._loop = loop
+        self._warned: set[tuple[str, str | None]] = set()
+        self._misses: list[float] = []
+        self._server_silence = Silence(loop.config.server)
+
+    def forget(self) -> None:
+        """Warn anew of what was warned of before: after a reset or unload."""
+        self._warned.clear()
+
+    def drive(self) -> None:
+        """The drive's own status."""
+        loop = self._loop
+        status = loop.status
+        now = time.monotonic()
+        if status & Status.LINK_LOST:
+            loop.enabled = loop.drive_brakes = False
+            loop.alarm("link_lost", Severity.FAULT, f"drive {loop.drive.name}: link lost; the drive brakes by itself")
+            loop.report(Event.LINK_LOST)
+            loop.drive.close()
+        elif loop.enabled and not loop.drive_brakes and status & (Status.FAULT | Status.ENCODER | Status.WATCHDOG):
+            word = "encoder" if status & Status.ENCODER else "watchdog" if status & Status.WATCHDOG else "fault"
+            frame = None
+            lost = np.flatnonzero(~np.isfinite(loop.measured))
+            if len(lost):
+                frame = FRAMES[int(lost[0])]
+            told = {
+                "encoder": f"{frame} frame: no position from its encoder",
+                "watchdog": "no command reached the drive in time: it brakes by itself",
+                "fault": "the drive reports a fault",
+            }[word]
+            loop.let_drive_brake(now)
+            self.trip(Finding(f"drive_{word}", True, told, frame, math.nan, math.nan, ""))
+        elif loop.enabled and status & Status.STALE_WRITE:
+            self.warn(Finding("stale_write", False, "the drive refused an old command", None, math.nan, math.nan, ""))
+
+    def measured(self, now: float) -> float:
+        """The tracking error [rad]; nan where nothing is followed."""
+        loop = self._loop
+        motion = loop.motion
+        if not loop.enabled or loop.drive_brakes:
+            return math.nan
+        error, found = loop.guard.measured(loop.measured, motion.x1, motion.q1)
+        if found is not None and found.code == "attitude_error" and motion.mode is Mode.LIVE and not loop.live.acquired:
+            found = None  # still on the way from where the rig stood to where the source is
+        if found is not None:
+            if found.trips and found.code == "following_error":
+                loop.let_drive_brake(now)
+            self.weigh(found)
+        return error
+
+    def lateness(self, now: float, lateness_ns: int, missed: int) -> None:
+        """Deadlines missed: what the drive did not hear in time."""
+        loop = self._loop
+        if missed:
+            loop.shared.header["misses"] += missed
+            self._misses = [t for t in self._misses if now - t < 1.0] + [now] * min(missed, 5000)
+            if loop.enabled and loop.machine.moving:
+                found = loop.guard.scalar("lateness", lateness_ns / 1e6, loop.config.guard.lateness_ms, "ms")
+                count = float(len(self._misses))
+                found = found or loop.guard.scalar("missed_deadlines", count, loop.config.guard.misses_per_s, "in 1 s")
+                if found is not None:
+                    self.weigh(found)
+
+    def recorder(self, now: float) -> None:
+        """A run goes on without its record, but not unsaid."""
+        loop = self._loop
+        if loop.run_id is None:
+            return
+        header = loop.shared.header
+        error = bytes(header["recorder_error"][0])
+        free = int(header["recorder_free_bytes"][0]) / 1e6
+        if now - int(header["recorder_beat_ns"][0]) / 1e9 > _RECORDER_SILENT_S:
+            self.warn(Finding("recorder_lost", False, "the recorder does not run", None, math.nan, math.nan, ""))
+        if error:
+            self.warn(Finding("record_error", False, error.decode("utf-8", "replace"), None, math.nan, math.nan, ""))
+        if 0 < free < loop.config.min_free_mb:
+            text = f"{free:.0f} MB free where runs are recorded"
+            self.warn(Finding("disk_low", False, text, None, free, loop.config.min_free_mb, "MB"))
+
+    def live(self) -> None:
+        """The live source's samples, and their age."""
+        loop = self._loop
+        live = loop.live
+        found = loop.guard.scalar("live_source_stale", live.last_age_ms, loop.config.guard.stale_ms, "ms")
+        if found is not None and live.heard:
+            self.weigh(found)
+        counts = live.counts
+        for word, told in (
+            ("bad", "are none"),
+            ("dropped", "came late or twice"),
+            ("clock_steps", "begin a new clock"),
+        ):
+            if counts[word]:
+                text = f"samples of the live source {told}: not used"
+                self.warn(Finding(f"live_{word}", False, text, None, math.nan, math.nan, ""))
+
+    def silences(self, now: float) -> None:
+        """Who holds the lease, and the server: a silent one means hold, then stop, then disarm."""
+        loop = self._loop
+        owned = loop.machine.state in IN_MOTION or loop.machine.state is State.ARMED
+        if not owned:
+            return
+        for event in loop.machine.silence(now):
+            self._silent("owner_silent", "the lease's holder is silent", event)
+        beat = int(loop.shared.header["server_beat_ns"][0]) / 1e9
+        for event in self._server_silence.due(now - beat):
+            self._silent("server_silent", "the server is silent", event)
+
+    def _silent(self, code: str, told: str, event: Event) -> None:
+        loop = self._loop
+        before = loop.machine.state
+        loop.report(event)
+        if loop.machine.state is not before:
+            loop.alarm(code, Severity.WARNING, f"{told}: {before} -> {loop.machine.state}")
+
+    def weigh(self, found: Finding) -> None:
+        """A finding of the guard: brake, or warn."""
+        if found.trips:
+            self.trip(found)
+        else:
+            self.warn(found)
+
+    def trip(self, found: Finding) -> None:
+        """Latch the fault and brake."""
+        self._raise(found, Severity.FAULT)
+        self._loop.report(Event.FAULT)
+
+    def warn(self, found: Finding) -> None:
+        """Raise a warning, once until a reset or unload."""
+        if (found.code, found.frame) not in self._warned:
+            self._warned.add((found.code, found.frame))
+            self._raise(found, Severity.WARNING)
+
+    def _raise(self, found: Finding, severity: Severity) -> None:
+        value = found.value if math.isfinite(found.value) else None
+        limit = found.limit if math.isfinite(found.limit) else None
+        unit = found.unit or None
+        self._loop.alarm(found.code, severity, found.message, frame=found.frame, value=value, limit=limit, unit=unit)
