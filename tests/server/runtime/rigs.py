@@ -63,8 +63,8 @@ class Operator:
         self.sequence = 0
 
     async def take(self, action: str = "take") -> None:
-        self.epoch = (await self.host.lease(action, self.who)).epoch
-        self.sequence = 0
+        lease = await self.host.lease(action, self.who)
+        self.epoch, self.sequence = lease.epoch, lease.sequence
 
     async def say(self, command: str, **args: Any) -> Reply:
         self.sequence += 1

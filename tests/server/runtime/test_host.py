@@ -93,8 +93,8 @@ def test_hold_resume_stop_estop_reset(tmp_path: Path) -> None:
             await asyncio.sleep(1.5)
             host.estop("somebody")
             snapshot = await operator.until("estopped")
-            assert [a.code for a in snapshot.alarms] == ["estop"]
-            assert snapshot.alarms[0].first
+            latched = [a for a in snapshot.alarms if a.severity != "warning"]  # a starved machine may warn of lateness
+            assert [(a.code, a.first) for a in latched] == [("estop", True)]
             refused = await operator.say("start")
             assert refused.error is not None
             assert refused.error.code == "illegal_command"

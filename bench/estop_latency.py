@@ -1,0 +1,108 @@
+"""From the E-stop request over HTTP to the first braking command, while the rig moves.
+
+    python -m bench.estop_latency [--times 100] [--viewers 200]
+
+The clock starts before the request is sent on an open connection and ends when the loop has written the first braking
+command to the drive (the loop notes the time in shared memory). The same for the flag alone, without HTTP.
+"""
+
+import argparse
+import asyncio
+import dataclasses
+import http.client
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from bench.machine import machine
+from bench.rig_load import loaded, post, served
+from server.runtime.config import RigConfig
+from server.runtime.host import RigHost
+from solver.rig import builtin_rigs
+from tests.server.runtime.rigs import Operator, plan_of, written
+
+RIG = "vertical-4"
+
+
+def ask(link: http.client.HTTPConnection) -> None:
+    """Request the E-stop over HTTP and wait for the answer."""
+    link.request("POST", f"/api/v1/rigs/{RIG}/estop", b"")
+    answer = link.getresponse()
+    body = answer.read()
+    assert answer.status == 200, body
+
+
+async def stop_once(host: RigHost, plan: Path, link: http.client.HTTPConnection | None, sign: float) -> float:
+    """Milliseconds from the request to the first braking command, in the middle of a move."""
+    operator = Operator(host, "bench")
+    await operator.take("takeover")
+    if host.snapshot().state == "disconnected":
+        await operator.must("connect")
+    await operator.must("load", plan_folder=str(plan))
+    await operator.must("arm")
+    pose = host.snapshot().pose_deg
+    await operator.must("move", target_deg=[v + sign * 40.0 for v in pose])
+    await asyncio.sleep(0.4)
+    shared = host._shared
+    assert shared is not None
+    asked = time.monotonic_ns()
+    if link is None:
+        host.estop("bench")
+    else:
+        await asyncio.to_thread(ask, link)
+    await operator.until("estopped")
+    await asyncio.sleep(0.05)
+    wrote = int(shared.header["estop_wrote_ns"][0])
+    assert wrote >= asked, "the rig was not moving"
+    taken = (wrote - asked) / 1e6
+    await asyncio.sleep(0.3)
+    await operator.recover()
+    return taken
+
+
+def row(name: str, values: list[float]) -> str:
+    """One line of the table."""
+    p50, p99 = np.percentile(values, [50, 99])
+    return f"{name:36s} {p50:8.2f} {p99:8.2f} {max(values):8.2f} {len(values):6d}"
+
+
+async def measure(times: int, viewers: int) -> None:
+    """The table."""
+    rig = builtin_rigs()[RIG]
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        plan = written(root / "plan", plan_of(rig, 1.0))
+        print(machine())
+        print(f"{'request to first braking command [ms]':36s} {'p50':>8s} {'p99':>8s} {'max':>8s} {'times':>6s}")
+        with served(root / "data") as port:
+            status, body = post(port, f"/rigs/{RIG}/lease", {"action": "take"})
+            assert status == 200, body
+            (lock,) = (root / "data").rglob("rig.lock")
+            config = RigConfig(RIG, rig, root / "data", root / "data" / "runs")
+            host = RigHost(dataclasses.replace(config, directory=lock.parent))
+            await host.start()
+            link = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+            for name, count in (("", 0), (f", {viewers} viewers, upload, planning", viewers)):
+                span = 4.0 * times + 30.0
+                with loaded(port, RIG, count, span, upload=bool(count), plan=bool(count)):
+                    await asyncio.sleep(3.0 if count else 0.0)
+                    for way, over in (("flag", None), ("HTTP", link)):
+                        taken = [await stop_once(host, plan, over, (-1.0) ** k) for k in range(times)]
+                        print(row(way + name, taken), flush=True)
+            link.close()
+            await host.close(stop_rig=False)
+
+
+def main() -> None:
+    """Print the table."""
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--times", type=int, default=100)
+    arguments.add_argument("--viewers", type=int, default=200)
+    given = arguments.parse_args()
+    asyncio.run(measure(given.times, given.viewers))
+
+
+if __name__ == "__main__":
+    main()
