@@ -5,18 +5,20 @@ import contextlib
 import signal
 import socket
 import sys
+import threading
 from collections.abc import Awaitable, Callable, Iterator
 
 import uvicorn
 
 from server.app import create_app
-from server.cli._exit import fail
-from server.client import ClientError
+from server.cli._exit import CommandError, fail
 from server.runtime.host import HostError
+from server.scene.scenes import warm
 from server.settings import Settings
 from server.store.errors import StoreError
 
 Ready = Callable[[str], Awaitable[None]]
+WARM_AFTER_S = 0.5
 
 
 def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
@@ -25,7 +27,7 @@ def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -
         asyncio.run(_run(settings, listener, url, ready))
     except StoreError as error:
         fail(str(error))
-    except (HostError, ClientError) as error:
+    except (HostError, CommandError) as error:
         fail(str(error), 1)
 
 
@@ -45,8 +47,12 @@ async def _run(settings: Settings, listener: socket.socket, url: str, ready: Rea
         serving = asyncio.create_task(server.serve(sockets=[listener]))
         sys.stdout.write(f"{url}\n")
         sys.stdout.flush()
+        # What the first look at a scene needs is loaded when the server has begun to answer, and nobody waits for it.
+        warming = threading.Thread(target=warm, name="scene-warm", daemon=True)
+        later = asyncio.get_running_loop().call_later(WARM_AFTER_S, warming.start)
         beside = asyncio.create_task(_beside(ready, url, server))
         await serving
+        later.cancel()
         beside.cancel()
         results = await asyncio.gather(beside, return_exceptions=True)
     for result in results:

@@ -8,6 +8,10 @@ BAD_INPUT = 2
 NOT_FEASIBLE = 3
 
 
+class CommandError(Exception):
+    """Why a command that serves cannot go on: one line for the person at the terminal."""
+
+
 def fail(message: str, status: int = BAD_INPUT) -> NoReturn:
     """Say why on one line of stderr and exit."""
     say(message)

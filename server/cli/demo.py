@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from server.cli._exit import say
+from server.cli._exit import CommandError, say
 
 if TYPE_CHECKING:
     from server.client import Client
@@ -41,16 +41,22 @@ def demo(
 
 
 async def fly(url: str) -> None:
-    """Upload, plan, load, arm, and fly until cancelled. Lets an operator who takes the lease have the rig."""
-    from server.client import Client
+    """Upload, plan, load, arm, and fly until cancelled. Lets an operator who takes the lease have the rig.
 
-    async with Client(url, name="demo") as client:
-        plan = await prepare(client)
-        sys.stdout.write(f"{NAME} on {RIG}: planned with {plan['method']}, flying it over and over. Ctrl-C ends.\n")
-        sys.stdout.flush()
-        while True:
-            await turn(client, plan)
-            await asyncio.sleep(PAUSE_S)
+    Raises `CommandError` where the server refuses for good.
+    """
+    from server.client import Client, ClientError
+
+    try:
+        async with Client(url, name="demo") as client:
+            plan = await prepare(client)
+            sys.stdout.write(f"{NAME} on {RIG}: planned with {plan['method']}, flying it over and over. Ctrl-C ends.\n")
+            sys.stdout.flush()
+            while True:
+                await turn(client, plan)
+                await asyncio.sleep(PAUSE_S)
+    except ClientError as error:
+        raise CommandError(str(error)) from error
 
 
 async def prepare(client: "Client") -> dict[str, Any]:

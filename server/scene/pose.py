@@ -5,6 +5,7 @@ node's quaternion is the active one, "to parent from local", so it is the transp
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 from solver.rig import ABSENT, Rig
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """What is to be seen: angles (4,) [rad], base first; target (4,) quaternion (w, x, y, z) or None."""
+
+    measured: Array
+    commanded: Array | None
+    target: Array | None
 
 
 def frame_quaternions(rig: Rig, angles: ArrayLike) -> list[Array]:

@@ -10,7 +10,6 @@ Node tree, each frame relative to the one around it:
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +22,7 @@ from trimesh.visual.material import PBRMaterial
 from server.scene import palette
 from server.scene.machine import Part, build
 from server.scene.payload_mesh import load_mesh
-from server.scene.pose import frame_quaternions
+from server.scene.pose import Pose, frame_quaternions
 from server.scene.shapes import arrow, joined
 from solver.rig import Rig
 
@@ -50,15 +49,6 @@ def _quiet() -> Iterator[None]:
         yield
     finally:
         console.quiet = before
-
-
-@dataclass(frozen=True)
-class Pose:
-    """What is to be seen: angles (4,) [rad], base first; target (4,) quaternion (w, x, y, z) or None."""
-
-    measured: Array
-    commanded: Array | None
-    target: Array | None
 
 
 class RigScene:

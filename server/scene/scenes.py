@@ -2,6 +2,9 @@
 
 viser's handles are not made for several writers, so everything that reaches a browser goes through this thread: 30
 times a second it takes each rig's newest sample and brings the scene to it. Nothing here is in the rig's loop.
+
+viser and trimesh take as long to load as the rest of the server: they are loaded when a scene is first wanted, or ahead
+of it by `warm`.
 """
 
 import logging
@@ -12,15 +15,18 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from server.scene.errors import UnknownSceneError
-from server.scene.rig_scene import Pose, RigScene
+from server.scene.pose import Pose
 from server.store.rig_file import DEFAULT_SIZE_M, Payload
 from solver.rig import Rig
+
+if TYPE_CHECKING:
+    from server.scene.rig_scene import RigScene
 
 Array = NDArray[np.float64]
 UPDATES_HZ = 30.0
@@ -29,10 +35,15 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class _Running:
-    scene: RigScene
+    scene: "RigScene"
     latest: Callable[[], Any] | None
     sample: Any = None
     failing: bool = False
+
+
+def warm() -> None:
+    """Load what draws, so that the first scene starts at once. Seconds; for a thread of its own."""
+    import server.scene.rig_scene  # noqa: F401
 
 
 class SceneServer:
@@ -58,6 +69,8 @@ class SceneServer:
         `folder` is where the payload's mesh file is. A scene of that name that is running is replaced. Raises
         `PayloadMeshError` where the mesh cannot be shown.
         """
+        from server.scene.rig_scene import RigScene
+
         mesh = None if payload.mesh is None else (folder or Path()) / payload.mesh
         scene = RigScene(rig, name, payload.size_m or DEFAULT_SIZE_M, mesh)
         with self._lock:

@@ -3,10 +3,12 @@
 from pathlib import Path
 
 from alembic.autogenerate import compare_metadata
+from alembic.config import Config
 from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
 from sqlalchemy import text
 
-from server.store.database import Database, migrate
+from server.store.database import HEAD, MIGRATIONS, Database, migrate
 from server.store.tables import Table
 
 
@@ -24,4 +26,23 @@ def test_opening_again_changes_nothing(tmp_path: Path) -> None:
     with database.engine.connect() as connection:
         assert connection.execute(text("PRAGMA journal_mode")).scalar() == "wal"
         assert connection.execute(text("PRAGMA foreign_keys")).scalar() == 1
+    database.close()
+
+
+def test_the_newest_revision_is_the_one_that_is_skipped() -> None:
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    assert ScriptDirectory.from_config(config).get_current_head() == HEAD
+
+
+def test_an_older_database_is_brought_up(tmp_path: Path) -> None:
+    database = Database(tmp_path / "a.db")
+    with database.engine.begin() as connection:
+        for table in ("plans", "trajectories", "audit"):
+            connection.execute(text(f"DROP TABLE {table}"))
+        connection.execute(text("DELETE FROM alembic_version"))
+    database.close()
+    database = Database(tmp_path / "a.db")
+    with database.begin() as session:
+        assert session.execute(text("SELECT count(*) FROM plans")).scalar() == 0
     database.close()
