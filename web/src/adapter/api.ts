@@ -1,6 +1,7 @@
 /** The REST API: one function a request, typed by the generated contract. */
 import type {
   CommandOut,
+  Comparison,
   Health,
   Lease,
   LeaseAction,
@@ -94,6 +95,13 @@ export const api = {
   createPlan: (trajectory: string, rig: string, method: string) =>
     request<Plan>("POST", "/plans", { trajectory, rig, method } satisfies Pick<PlanIn, "trajectory" | "rig" | "method">),
   cancelPlan: (id: string) => request<void>("DELETE", `/plans/${at(id)}`),
+
+  comparisons: () => request<Comparison[]>("GET", "/compare"),
+  comparison: (id: string) => request<Comparison>("GET", `/compare/${at(id)}`),
+  createComparison: (trajectory: string, rig: string, methods: string[]) =>
+    request<Comparison>("POST", "/compare", { trajectory, rig, methods }),
+  /** Cancels one that is under way, removes one that is not. */
+  removeComparison: (id: string) => request<void>("DELETE", `/compare/${at(id)}`),
 
   command: (rig: string, command: string, args: object, lease: LeaseToken | null) =>
     request<CommandOut>("POST", `/rigs/${at(rig)}/commands`, { command, args, lease }),

@@ -5,12 +5,15 @@ type Schemas = components["schemas"];
 
 export type Alarm = Schemas["AlarmOut"];
 export type CommandOut = Schemas["CommandOut"];
+export type Comparison = Schemas["ComparisonOut"];
 export type FrameName = keyof Schemas["FramesOut"];
 export type Health = Schemas["HealthOut"];
 export type Lease = Schemas["LeaseOut"];
 export type LeaseAction = Schemas["LeaseIn"]["action"];
 export type LeaseToken = Schemas["LeaseToken"];
 export type Method = Schemas["MethodOut"];
+export type MethodFigures = Schemas["MethodFiguresOut"];
+export type Peak = Schemas["PeakOut"];
 export type Plan = Schemas["PlanOut"];
 export type PlanIn = Schemas["PlanIn"];
 export type PlanSamples = Schemas["PlanSamples"];

@@ -1,16 +1,11 @@
-/** What the server keeps: rigs, trajectories, plans, methods, runs. Read when asked for, plans also while one is solved. */
+/** What the server keeps: rigs, trajectories, methods, runs, and the jobs: plans and comparisons. */
 import { api, messageOf, upload } from "../adapter/api";
-import type { Health, Method, Plan, Rig, Run, Trajectory } from "../contract/types";
-
-const POLL_MS = 250;
-const UNFINISHED = new Set(["queued", "running"]);
-
-export const unfinished = (plan: Plan): boolean => UNFINISHED.has(plan.status);
+import type { Comparison, Health, Method, Plan, Rig, Run, Trajectory } from "../contract/types";
+import { Jobs } from "./jobs.svelte";
 
 class Library {
   rigs: Rig[] = $state.raw([]);
   trajectories: Trajectory[] = $state.raw([]);
-  plans: Plan[] = $state.raw([]);
   methods: Method[] = $state.raw([]);
   /** Null until first read: a long record takes a while to be summed up. */
   runs: Run[] | null = $state.raw(null);
@@ -21,12 +16,14 @@ class Library {
   plan: string | null = $state(null);
   uploading: { name: string; fraction: number } | null = $state(null);
 
-  #polling = false;
+  readonly #plans = new Jobs<Plan>(api.plans, api.plan);
+  readonly comparisons = new Jobs<Comparison>(api.comparisons, api.comparison);
 
+  readonly plans = $derived(this.#plans.all);
   readonly chosenTrajectory = $derived(this.trajectories.find(({ sha256 }) => sha256 === this.trajectory) ?? null);
   readonly chosenPlan = $derived(this.plans.find(({ id }) => id === this.plan) ?? null);
 
-  /** Reads everything a page may show; a part that fails says so and leaves the others. */
+  /** Reads what every page needs; a part that fails says so and leaves the others. */
   async refresh(): Promise<void> {
     this.problem = null;
     await Promise.all([
@@ -35,7 +32,6 @@ class Library {
       this.#read(async () => (this.health = await api.health())),
       this.refreshTrajectories(),
       this.refreshPlans(),
-      this.refreshRuns(),
     ]);
   }
 
@@ -44,8 +40,8 @@ class Library {
   refreshRuns = (): Promise<void> => this.#read(async () => (this.runs = await api.runs()));
 
   async refreshPlans(): Promise<void> {
-    await this.#read(async () => (this.plans = await api.plans()));
-    if (this.plans.some(unfinished)) void this.#poll();
+    await this.#plans.refresh();
+    this.problem ??= this.#plans.problem;
   }
 
   async upload(file: File, convention: string): Promise<Trajectory> {
@@ -63,9 +59,8 @@ class Library {
 
   async createPlan(trajectory: string, rig: string, method: string): Promise<Plan> {
     const plan = await api.createPlan(trajectory, rig, method);
-    this.#put(plan);
+    this.#plans.put(plan);
     this.plan = plan.id;
-    void this.#poll();
     return plan;
   }
 
@@ -74,24 +69,16 @@ class Library {
     await this.refreshPlans();
   }
 
-  async #poll(): Promise<void> {
-    if (this.#polling) return;
-    this.#polling = true;
-    try {
-      while (this.plans.some(unfinished)) {
-        await new Promise((resolve) => setTimeout(resolve, POLL_MS));
-        for (const { id } of this.plans.filter(unfinished)) this.#put(await api.plan(id));
-      }
-    } catch (error) {
-      this.problem = messageOf(error);
-    } finally {
-      this.#polling = false;
-    }
+  async compare(trajectory: string, rig: string, methods: string[]): Promise<Comparison> {
+    const comparison = await api.createComparison(trajectory, rig, methods);
+    this.comparisons.put(comparison);
+    return comparison;
   }
 
-  #put(plan: Plan): void {
-    const others = this.plans.filter(({ id }) => id !== plan.id);
-    this.plans = this.plans.length === others.length ? [plan, ...others] : this.plans.map((p) => (p.id === plan.id ? plan : p));
+  /** Cancels one that is under way; removes one that is not. */
+  async removeComparison(id: string): Promise<void> {
+    await api.removeComparison(id);
+    await this.comparisons.refresh();
   }
 
   async #read(read: () => Promise<unknown>): Promise<void> {

@@ -1,0 +1,202 @@
+/** Methods side by side: the columns of the table, which values are the best, and what a method comes to. */
+import { FRAMES, type Comparison, type MethodFigures, type Peak } from "../contract/types";
+import { fixed, integer, scientific } from "./format";
+
+export interface Standing {
+  tone: "good" | "caution" | "danger" | "";
+  word: string;
+  /** Why, in a few words. */
+  detail: string;
+}
+
+export interface Column {
+  key: string;
+  heading: string;
+  unit: string;
+  tip: string;
+  value: (method: MethodFigures) => number | null;
+  text: (method: MethodFigures) => string;
+  better: "low" | "high";
+  /** Whether a value is a failing of its own, however the others do. */
+  bad: (method: MethodFigures) => "danger" | "caution" | "";
+  /** Whether only methods that could be flown compete: low effort is no merit of a method that misses the flight. */
+  fitOnly: boolean;
+}
+
+/** Exact at every sample and inside every limit. */
+export function fit(method: MethodFigures): boolean {
+  return method.refusal === null && method.feasible === true && method.exact_share === 1;
+}
+
+export function standingOf(method: MethodFigures): Standing {
+  if (method.refusal !== null) return { tone: "", word: "Does not apply", detail: method.refusal };
+  if (method.feasible === false) return { tone: "danger", word: "Not feasible", detail: beyond(method) ?? missed(method) ?? "" };
+  if (method.exact_share !== 1) return { tone: "caution", word: "Not exact", detail: missed(method) ?? "" };
+  return { tone: "good", word: "Exact, inside limits", detail: "" };
+}
+
+/** The frame and limit that most samples are beyond. */
+function beyond({ limit_violation_counts: counts }: MethodFigures): string | null {
+  const all = Object.entries(counts ?? {}).flatMap(([frame, kinds]) =>
+    Object.entries(kinds).map(([limit, samples]) => ({ what: `${frame} ${limit}`, samples })),
+  );
+  const worst = all.sort((a, b) => b.samples - a.samples)[0];
+  return worst && worst.samples > 0 ? `${worst.what}, ${samplesOf(worst.samples)}` : null;
+}
+
+function missed({ failures }: MethodFigures): string | null {
+  const first = failures?.[0];
+  return first ? `${first.reason}, ${samplesOf(first.samples)}` : null;
+}
+
+const samplesOf = (count: number): string => `${integer(count)} ${count === 1 ? "sample" : "samples"}`;
+
+function largest(method: MethodFigures, key: keyof Peak): number | null {
+  const peaks = FRAMES.flatMap((frame) => method.peak?.[frame]?.[key] ?? []);
+  return peaks.length > 0 ? Math.max(...peaks) : null;
+}
+
+/** 100 % only of all samples; what is a little less never rounds up to it. */
+export function share(value: number | null | undefined): string {
+  if (value === null || value === undefined) return fixed(null, 0);
+  if (value === 1) return "100 %";
+  return `${fixed(Math.floor(value * 1e4) / 100, 2)} %`;
+}
+
+const fine = (): "" => "";
+
+export const COLUMNS: readonly Column[] = [
+  {
+    key: "exact",
+    heading: "Exact",
+    unit: "",
+    tip: "Share of the samples that reproduce the attitude",
+    value: ({ exact_share }) => exact_share ?? null,
+    text: ({ exact_share }) => share(exact_share),
+    better: "high",
+    bad: ({ exact_share }) => (exact_share === 1 ? "" : "caution"),
+    fitOnly: false,
+  },
+  {
+    key: "largest",
+    heading: "Largest error",
+    unit: "deg",
+    tip: "Geodesic attitude error",
+    value: ({ max_error_deg }) => max_error_deg ?? null,
+    text: ({ max_error_deg }) => scientific(max_error_deg),
+    better: "low",
+    bad: fine,
+    fitOnly: false,
+  },
+  {
+    key: "rms",
+    heading: "RMS error",
+    unit: "deg",
+    tip: "Geodesic attitude error",
+    value: ({ rms_error_deg }) => rms_error_deg ?? null,
+    text: ({ rms_error_deg }) => scientific(rms_error_deg),
+    better: "low",
+    bad: fine,
+    fitOnly: false,
+  },
+  {
+    key: "violations",
+    heading: "Beyond limits",
+    unit: "samples",
+    tip: "Samples beyond a limit of any frame",
+    value: ({ limit_violation_samples }) => limit_violation_samples ?? null,
+    text: ({ limit_violation_samples }) => integer(limit_violation_samples),
+    better: "low",
+    bad: ({ limit_violation_samples }) => ((limit_violation_samples ?? 0) > 0 ? "danger" : ""),
+    fitOnly: false,
+  },
+  {
+    key: "rate",
+    heading: "Peak rate",
+    unit: "deg/s",
+    tip: "Of any frame",
+    value: (method) => largest(method, "rate_deg_s"),
+    text: (method) => big(largest(method, "rate_deg_s"), 1),
+    better: "low",
+    bad: fine,
+    fitOnly: true,
+  },
+  {
+    key: "acceleration",
+    heading: "Peak acceleration",
+    unit: "deg/s²",
+    tip: "Of any frame",
+    value: (method) => largest(method, "acceleration_deg_s2"),
+    text: (method) => big(largest(method, "acceleration_deg_s2"), 1),
+    better: "low",
+    bad: fine,
+    fitOnly: true,
+  },
+  {
+    key: "iterations",
+    heading: "Iterations",
+    unit: "median",
+    tip: "A step, median; the most is behind it",
+    value: ({ iterations }) => iterations?.median ?? null,
+    text: ({ iterations }) => (iterations ? `${fixed(iterations.median, 0)} / ${iterations.max}` : fixed(null, 0)),
+    better: "low",
+    bad: fine,
+    fitOnly: true,
+  },
+  {
+    key: "step",
+    heading: "Step",
+    unit: "µs",
+    tip: "Median of a step on the server's machine; the 99th percentile is behind it",
+    value: ({ step_us }) => step_us?.median ?? null,
+    text: ({ step_us }) => (step_us ? `${microseconds(step_us.median)} / ${microseconds(step_us.p99)}` : fixed(null, 0)),
+    better: "low",
+    bad: fine,
+    fitOnly: true,
+  },
+];
+
+const microseconds = (value: number): string => fixed(value, value < 10 ? 2 : 1);
+
+/** A peak in plain digits up to five of them: an impossible one is a power of ten. */
+function big(value: number | null, digits: number): string {
+  return value !== null && value >= 1e5 ? scientific(value) : fixed(value, digits);
+}
+
+/** Values this close to each other are read as the same [relative]. */
+const SAME = 1e-3;
+/** A mark that most methods have says nothing [share of them]. */
+const MOST = 2 / 3;
+
+/**
+ * The methods whose value in a column is the best; none where most of them share it.
+ * Errors below `exactWithinDeg` are rounding, hence equal.
+ */
+export function best(column: Column, methods: readonly MethodFigures[], exactWithinDeg: number): ReadonlySet<string> {
+  const floor = column.unit === "deg" ? exactWithinDeg : 0;
+  const rivals = methods.flatMap((method) => {
+    const value = method.refusal !== null || (column.fitOnly && !fit(method)) ? null : column.value(method);
+    return value === null ? [] : [{ name: method.method, value: Math.max(value, floor) }];
+  });
+  const values = rivals.map(({ value }) => value);
+  const top = column.better === "low" ? Math.min(...values) : Math.max(...values);
+  const winners = rivals.filter(({ value }) => Math.abs(value - top) <= SAME * Math.abs(top));
+  return new Set(winners.length <= MOST * rivals.length ? winners.map(({ name }) => name) : []);
+}
+
+/** Those that can be flown first, then the ones nearer to it; the order asked for is kept within a rank. */
+export function ranked(methods: readonly MethodFigures[]): MethodFigures[] {
+  const rank = (method: MethodFigures): number => ["good", "caution", "danger", ""].indexOf(standingOf(method).tone);
+  return [...methods].sort((a, b) => rank(a) - rank(b));
+}
+
+/** One line on what came out of it. */
+export function summaryOf({ report }: Pick<Comparison, "report">): string {
+  if (!report) return "";
+  const able = report.methods.filter(fit);
+  if (able.length === 0) return "No method flies this exactly within the limits of the rig.";
+  const names = able.map(({ method }) => method);
+  if (able.length === report.methods.length) return "All methods fly it exactly within the limits.";
+  const list = names.length === 1 ? names[0] : `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
+  return `${list} ${names.length === 1 ? "flies" : "fly"} it exactly within the limits.`;
+}
