@@ -23,4 +23,5 @@ class PlanOptions:
     iterations: int = 12  # of the refinement, at most
     alternatives: int = 6  # other chains tried before the accelerations are called the obstacle
     window: float = 12.0  # [s] of one refinement problem; longer flights go window by window
+    best_effort: bool = True  # an infeasible flight is brought inside the limits, at the least attitude error
     overlap: float = 3.0  # [s] that a window shares with the one before

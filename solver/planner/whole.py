@@ -110,7 +110,7 @@ class _Search:
             part = slice(*np.searchsorted(self.time, (first, first + 2.0 * reach)))
             self.avoid.append(Avoid(self.time[part], path.angles[part].copy(), AVOID_RADIUS, AVOID_COST))
 
-    def alternative(self, attempt: int, grid: float) -> Chain:
+    def alternative(self, attempt: int, grid: float, slack: float) -> Chain:
         """Another chain, after some have failed.
 
         First without a price on the singularity: a flight that must pass through it is better off going straight.
@@ -121,11 +121,11 @@ class _Search:
         self.margin_gain = 0.0 if attempt == 1 else 4.0 if attempt == 4 else 1.0
         if attempt in (1, 4):
             self.avoid = []
-        if attempt == 3:
+        if attempt == 3 and grid > self.options.fine_grid:
             self.samples = stage_samples(self.time, 0.5 * self.options.stage)
             self.avoid = []
             grid = 0.5 * grid
-        chain = self.chain(grid)
+        chain = self.chain(grid, slack)
         self.avoid = avoid
         return chain
 
@@ -191,6 +191,7 @@ def _fly(search: _Search) -> _Flown:
     options, time, rig = search.options, search.time, search.rig
     n = len(time)
     grid = options.grid
+    slack = 0.0
     none = np.zeros(n, np.int16)
     chain = search.chain(grid)
     if not chain.found:
@@ -198,9 +199,14 @@ def _fly(search: _Search) -> _Flown:
         wide = search.chain(grid, slack=grid / OVERLAP)
         if wide.found:
             chain = search.chain(grid)
-            chain = chain if chain.found else wide
+            if not chain.found:
+                chain, slack = wide, grid / OVERLAP
         else:
             chain = wide
+    if not chain.found and not options.best_effort:
+        blocking = Blocking(float(time[search.samples[chain.reached]]), FRAMES[chain.frame], LIMITS[chain.limit])
+        angles = np.repeat(rig.home[None], n, axis=0)
+        return _Flown(angles, np.zeros(n, np.int32), np.ones(n, np.int16), LIMITS[chain.limit], blocking, grid)
     if not chain.found:
         blocking = Blocking(float(time[search.samples[chain.reached]]), FRAMES[chain.frame], LIMITS[chain.limit])
         effort = _least_error(search)
@@ -208,7 +214,7 @@ def _fly(search: _Search) -> _Flown:
     best: tuple[float, Path] | None = None
     for attempt in range(options.alternatives + 1):
         if attempt > 0:
-            following = search.alternative(attempt, grid)
+            following = search.alternative(attempt, grid, slack)
             if not following.found:
                 continue
             chain = following
@@ -223,6 +229,8 @@ def _fly(search: _Search) -> _Flown:
     path = best[1]
     _, sample, frame, limit = overrun(time, path.angles, rig)
     blocking = Blocking(float(time[sample]), FRAMES[frame], LIMITS[limit])
+    if not options.best_effort:
+        return _Flown(path.angles, path.iterations, none, "acceleration", blocking, grid)
     effort = least_error(time, search.attitude, path.angles, rig, options, search.start)
     if not effort.limited.any():  # not even that gave the attitude up
         return _Flown(effort.angles, path.iterations, effort.limited, "checked", None, grid)
@@ -294,6 +302,8 @@ def _three_axis(time: Array, attitude: Array, rig: Rig, start: Array | None, opt
     iterations, limited = np.zeros(len(time), np.int32), np.zeros(len(time), np.int16)
     if over <= MET:
         return _Flown(angles, iterations, limited, "checked", None, math.nan)
-    effort = least_error(time, attitude, angles, rig, options)
     blocking = Blocking(float(time[sample]), FRAMES[frame], LIMITS[limit])
+    if not options.best_effort:
+        return _Flown(angles, iterations, limited, "three-axis", blocking, math.nan)
+    effort = least_error(time, attitude, angles, rig, options)
     return _Flown(effort.angles, iterations, effort.limited, "three-axis", blocking, math.nan)
