@@ -2,7 +2,7 @@
 
     python -m bench.estop_latency [--times 100] [--viewers 200]
 
-The clock starts before the request is sent on an open connection and ends when the loop has written the first braking
+The clock starts before the connection is opened and ends when the loop has written the first braking
 command to the drive (the loop notes the time in shared memory). The same for the flag alone, without HTTP.
 """
 
@@ -26,15 +26,17 @@ from tests.server.runtime.rigs import Operator, plan_of, written
 RIG = "vertical-4"
 
 
-def ask(link: http.client.HTTPConnection) -> None:
-    """Request the E-stop over HTTP and wait for the answer."""
+def ask(port: int) -> None:
+    """Request the E-stop over HTTP, connecting included, and wait for the answer."""
+    link = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
     link.request("POST", f"/api/v1/rigs/{RIG}/estop", b"")
     answer = link.getresponse()
     body = answer.read()
+    link.close()
     assert answer.status == 200, body
 
 
-async def stop_once(host: RigHost, plan: Path, link: http.client.HTTPConnection | None, sign: float) -> float:
+async def stop_once(host: RigHost, plan: Path, port: int | None, sign: float) -> float:
     """Milliseconds from the request to the first braking command, in the middle of a move."""
     operator = Operator(host, "bench")
     await operator.take("takeover")
@@ -48,10 +50,10 @@ async def stop_once(host: RigHost, plan: Path, link: http.client.HTTPConnection 
     shared = host._shared
     assert shared is not None
     asked = time.monotonic_ns()
-    if link is None:
+    if port is None:
         host.estop("bench")
     else:
-        await asyncio.to_thread(ask, link)
+        await asyncio.to_thread(ask, port)
     await operator.until("estopped")
     await asyncio.sleep(0.05)
     wrote = int(shared.header["estop_wrote_ns"][0])
@@ -83,15 +85,13 @@ async def measure(times: int, viewers: int) -> None:
             config = RigConfig(RIG, rig, root / "data", root / "data" / "runs")
             host = RigHost(dataclasses.replace(config, directory=lock.parent))
             await host.start()
-            link = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
             for name, count in (("", 0), (f", {viewers} viewers, upload, planning", viewers)):
                 span = 4.0 * times + 30.0
                 with loaded(port, RIG, count, span, upload=bool(count), plan=bool(count)):
                     await asyncio.sleep(3.0 if count else 0.0)
-                    for way, over in (("flag", None), ("HTTP", link)):
+                    for way, over in (("flag", None), ("HTTP", port)):
                         taken = [await stop_once(host, plan, over, (-1.0) ** k) for k in range(times)]
                         print(row(way + name, taken), flush=True)
-            link.close()
             await host.close(stop_rig=False)
 
 

@@ -1,0 +1,124 @@
+"""Live source over UDP at 1 kHz on loopback: sample to reply, and whether the rig process's memory stays flat.
+
+    python -m bench.live_latency [--seconds 60]        (600 for the soak)
+
+Round trip: from before the send to after the reply's arrival, the wait for the loop's next tick included. Latency: the
+loop's own figure, from the sample's arrival in the rig process to the reply.
+"""
+
+import argparse
+import asyncio
+import math
+import select
+import socket
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+
+from bench.machine import machine
+from server.runtime.config import LiveConfig, RigConfig
+from server.runtime.host import RigHost
+from server.runtime.live_packet import REPLY_SIZE, Kind, LiveStatus, decode_reply, encode_sample
+from solver.rig import builtin_rigs
+from tests.server.runtime.rigs import Operator
+
+
+def resident_kb(pid: int) -> int:
+    """Resident memory of a process [kB]."""
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    return int(next(line for line in lines if line.startswith("VmRSS")).split()[1])
+
+
+class Source(threading.Thread):
+    """Sends a smooth flight at 1 kHz and notes when each reply comes."""
+
+    def __init__(self, port: int, seconds: float) -> None:
+        super().__init__(daemon=True)
+        self._link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._link.connect(("127.0.0.1", port))
+        self._link.setblocking(False)
+        self._seconds = seconds
+        self.sent = 0
+        self.trips: list[float] = []
+        self.latency: list[float] = []
+        self.errors: list[float] = []
+        self.statuses: dict[int, int] = {}
+
+    def run(self) -> None:
+        """Until the time is over."""
+        sent_at: dict[int, int] = {}
+        begun = due = time.monotonic()
+        while (t := time.monotonic() - begun) < self._seconds:
+            ramp = min(1.0, t / 3.0) ** 3
+            angles = tuple(ramp * a * math.sin(w * t) for a, w in ((30.0, 0.7), (15.0, 1.1), (40.0, 0.9)))
+            sent_at[self.sent] = time.monotonic_ns()
+            self._link.send(encode_sample(Kind.EULER, self.sent, t, angles, ()))
+            self.sent += 1
+            due = max(due + 1e-3, time.monotonic() - 0.01)
+            while (left := due - time.monotonic()) > 0.0:
+                if not select.select([self._link], [], [], left)[0]:
+                    break
+                reply = decode_reply(self._link.recv(REPLY_SIZE))
+                now = time.monotonic_ns()
+                if reply is None or reply.sequence not in sent_at:
+                    continue
+                self.trips.append((now - sent_at.pop(reply.sequence)) / 1e3)
+                self.latency.append(reply.latency_us)
+                self.statuses[reply.status] = self.statuses.get(reply.status, 0) + 1
+                if reply.status == LiveStatus.FOLLOWED:
+                    self.errors.append(reply.error_deg)
+        self._link.close()
+
+
+async def measure(seconds: float) -> None:
+    """The figures."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        rig = builtin_rigs()["vertical-4"]
+        live = LiveConfig(udp_port=port, extrapolate_ms=200.0)
+        host = RigHost(RigConfig("live", rig, root / "rig", root / "runs", live=live, min_free_mb=1.0))
+        await host.start()
+        operator = Operator(host, "bench")
+        await operator.take()
+        await operator.must("connect")
+        await operator.must("load", live={"method": "exact"})
+        await operator.must("arm")
+        await operator.must("go_live")
+        source = Source(port, seconds)
+        source.start()
+        pid = host.snapshot().health.rig_pid
+        memory = []
+        begun = time.monotonic()
+        while source.is_alive():
+            await asyncio.sleep(1.0)
+            await host.lease("renew", "bench")
+            if time.monotonic() - begun > 5.0:
+                memory.append(resident_kb(pid))
+        await operator.until("armed", "faulted")
+        snapshot = host.snapshot()
+        await host.close(stop_rig=True)
+    print(machine())
+    for name, values in (("round trip [us]", source.trips), ("latency in the rig process [us]", source.latency)):
+        p50, p99, p999 = np.percentile(values, [50, 99, 99.9])
+        print(f"{name:34s} p50 {p50:8.1f}  p99 {p99:8.1f}  p99.9 {p999:8.1f}  max {max(values):8.1f}")
+    print(f"sent {source.sent}, answered {len(source.trips)}, by status {source.statuses}")
+    print(f"largest solve error where followed {max(source.errors):.2e} deg")
+    print(f"memory of the rig process {memory[0]} kB -> {memory[-1]} kB over {len(memory)} s")
+    print(f"ended {snapshot.state}, alarms {[a.code for a in snapshot.alarms]}")
+
+
+def main() -> None:
+    """Print the figures."""
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--seconds", type=float, default=60.0)
+    asyncio.run(measure(arguments.parse_args().seconds))
+
+
+if __name__ == "__main__":
+    main()
