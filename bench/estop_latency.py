@@ -45,7 +45,7 @@ async def stop_once(host: RigHost, plan: Path, port: int | None, sign: float) ->
     await operator.must("load", plan_folder=str(plan))
     await operator.must("arm")
     pose = host.snapshot().pose_deg
-    await operator.must("move", target_deg=[v + sign * 40.0 for v in pose])
+    await operator.must("move", target_deg=[v + sign * 300.0 for v in pose])
     await asyncio.sleep(0.4)
     shared = host._shared
     assert shared is not None
