@@ -35,9 +35,9 @@ class Database:
 def migrate(engine: Engine) -> None:
     """Bring the schema to the newest revision."""
     with engine.begin() as connection:
-        if inspect(connection).has_table("alembic_version"):
-            if connection.scalar(text("SELECT version_num FROM alembic_version")) == HEAD:
-                return
+        known = inspect(connection).has_table("alembic_version")
+        if known and connection.scalar(text("SELECT version_num FROM alembic_version")) == HEAD:
+            return
     # Takes a tenth of the server's start to load, and has something to do once in a version's life.
     from alembic import command
     from alembic.config import Config

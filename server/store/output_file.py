@@ -19,7 +19,6 @@ _CHUNK = 4096
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """A path beside `path` to write to; it takes the place of `path` at the end, and is removed by an exception."""
-    path.parent.mkdir(parents=True, exist_ok=True)
     descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     os.close(descriptor)
     draft = Path(name)
@@ -39,9 +38,9 @@ def check_writable(path: Path) -> None:
     if path.is_dir():
         raise FileError(str(path), "a file to write, this is a folder")
     folder = path.parent
-    while not folder.exists():
-        folder = folder.parent
-    if not folder.is_dir() or not os.access(folder, os.W_OK):
+    if not folder.exists():
+        raise FileError(str(path), f"a place to write, there is no folder {folder}")
+    if not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
         raise FileError(str(path), f"a place to write, {folder} is not one")
 
 

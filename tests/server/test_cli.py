@@ -145,6 +145,9 @@ def test_bad_input_is_one_clear_line_and_out_is_untouched(tmp_path: Path, text: 
         (("--option", "nonsense=1"), "nonsense"),
         (("--option", "nonsense"), "name=value"),
         (("--out", "/dev/null/x.csv"), "place to write"),
+        (("--out", "no/such/folder/x.csv"), "no folder"),
+        (("--report", "no/such/folder/r.json"), "no folder"),
+        (("--plot", "no/such/folder/p.html"), "no folder"),
     ],
 )
 def test_arguments_that_cannot_be(tmp_path: Path, more: tuple[str, str], told: str) -> None:
@@ -152,7 +155,8 @@ def test_arguments_that_cannot_be(tmp_path: Path, more: tuple[str, str], told: s
     assert done.returncode == 2, done.stderr
     assert done.stderr.count("\n") == 1
     assert told in done.stderr
-    assert not (tmp_path / "out.csv").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["flight.csv"]
+    assert not Path("no").exists()
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:

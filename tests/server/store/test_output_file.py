@@ -65,4 +65,7 @@ def test_a_place_that_cannot_be_written_is_known_before_the_work(tmp_path: Path)
     (tmp_path / "file").write_text("")
     with pytest.raises(FileError, match="place to write"):
         check_writable(tmp_path / "file" / "out.csv")
-    check_writable(tmp_path / "new" / "deep" / "out.csv")
+    with pytest.raises(FileError, match="no folder"):
+        check_writable(tmp_path / "new" / "out.csv")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    check_writable(tmp_path / "out.csv")
