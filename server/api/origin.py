@@ -1,9 +1,11 @@
 """Which pages a browser may let talk to this server: its own, and those named in the settings.
 
 Every WebSocket and every request that changes something must come from an allowed origin, or from no page at all (no
-Origin header: a program). A browser is also kept from being led here under a foreign name (DNS rebinding).
+Origin header: a program). A browser is also kept from being led here under a foreign name (DNS rebinding): a name must
+be this machine's own or in the settings. An address cannot be rebound: any is taken where the network may come.
 """
 
+import ipaddress
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
@@ -48,10 +50,18 @@ class OriginGuard:
         return f"origin {origin[:80]!r} may not use this server: name it in allowed_origins"
 
     def _host_allowed(self, host: str) -> bool:
-        name = urlsplit(f"//{host}").hostname or ""
-        return (
-            self._settings.allow_unauthenticated_network
-            or name == self._settings.host
-            or is_loopback(name)
-            or name in self._settings.allowed_hosts
-        )
+        try:
+            name = urlsplit(f"//{host}").hostname or ""
+        except ValueError:  # brackets that do not pair
+            return False
+        if is_loopback(name) or (_is_address(name) and not self._settings.loopback):
+            return True
+        return name in {known.lower() for known in (self._settings.host, *self._settings.allowed_hosts)}
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True

@@ -6,10 +6,13 @@ from pathlib import Path
 
 import httpx
 import pytest
+from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from server.api.console import console
+from server.api.origin import OriginGuard
 from server.app import DataDirInUseError, create_app
 from server.settings import Settings, is_loopback
 from tests.server.api.live_server import LiveServer
@@ -32,6 +35,40 @@ def test_a_foreign_page_may_look_and_not_touch(server: LiveServer) -> None:
 def test_another_name_for_this_server_is_refused(server: LiveServer) -> None:
     assert server.http.get("/rigs", headers={"host": "rebound.example"}).status_code == 403
     assert server.http.get("/rigs", headers={"host": "localhost:1"}).status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("bound", "host", "answered"),
+    [
+        ("127.0.0.1", "localhost:8642", True),
+        ("127.0.0.1", "[::1]:8642", True),
+        ("127.0.0.1", "Rig-7.example:8642", True),
+        ("127.0.0.1", "192.168.1.5:8642", False),
+        ("0.0.0.0", "192.168.1.5:8642", True),
+        ("0.0.0.0", "[fe80::1]", True),
+        ("0.0.0.0", "rig-7.example", True),
+        ("0.0.0.0", "localhost", True),
+        ("0.0.0.0", "rebound.example", False),
+        ("rig-8.example", "rig-8.example:8642", True),
+        ("rig-8.example", "rebound.example", False),
+        ("0.0.0.0", "[broken", False),
+        ("0.0.0.0", "", False),
+    ],
+)
+def test_an_open_network_does_not_open_every_name(bound: str, host: str, answered: bool) -> None:
+    settings = Settings(host=bound, allow_unauthenticated_network=True, allowed_hosts=("rig-7.example",))
+
+    async def inside(scope: Scope, receive: Receive, send: Send) -> None:
+        await Response("inside")(scope, receive, send)
+
+    async def get() -> httpx.Response:
+        transport = httpx.ASGITransport(app=OriginGuard(inside, settings))
+        async with httpx.AsyncClient(transport=transport, base_url="http://localhost") as client:
+            return await client.get("/", headers={"host": host})
+
+    answer = asyncio.run(get())
+    assert answer.is_success is answered
+    assert answered or "allowed_hosts" in answer.json()["detail"]
 
 
 def test_paths_that_are_not_there_are_problems(server: LiveServer) -> None:
