@@ -9,18 +9,21 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fastapi import Depends, FastAPI
+from fastapi import Depends, FastAPI, Request, Response
 from starlette.requests import HTTPConnection
 
 from server.api import openapi, problems
 from server.api.console import console
 from server.api.hosts import RigHosts
 from server.api.origin import OriginGuard
-from server.api.routes import audit, compare, health, plans, rigs, runs, sessions, solve, stream, trajectories
+from server.api.problems import ApiError, problem_response
+from server.api.routes import audit, compare, health, plans, rigs, runs, scene, sessions, solve, stream, trajectories
 from server.api.run_files import RunFiles
 from server.api.services import Services
 from server.plan_folder import rig_hash
 from server.runtime.config import RigConfig
+from server.scene.errors import PayloadMeshError, SceneError
+from server.scene.on_demand import ScenesOnDemand
 from server.scene.proxy import router as scene_router
 from server.scene.scenes import SceneServer
 from server.settings import Settings
@@ -65,7 +68,8 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.scenes = SceneServer()
     problems.install(app)
-    for module in (rigs, trajectories, plans, compare, sessions, stream, solve, runs, audit, health):
+    app.add_exception_handler(SceneError, _scene_problem)
+    for module in (rigs, trajectories, plans, compare, sessions, scene, stream, solve, runs, audit, health):
         app.include_router(module.router, prefix=API)
     app.include_router(scene_router, dependencies=[Depends(_scene)])
     app.mount("/", console())
@@ -88,8 +92,9 @@ def _lifespan(settings: Settings) -> Callable[[FastAPI], Any]:
             stack.callback(os.close, await asyncio.to_thread(_lock, folder))
             database = await asyncio.to_thread(Database, folder / "fullpose.db")
             stack.callback(database.close)
-            services = _build(settings, folder, database)
+            services = _build(settings, folder, database, app.state.scenes)
             stack.callback(app.state.scenes.close)
+            app.state.on_demand = services.scenes
             await services.queue.start()
             stack.push_async_callback(services.queue.close)
             stack.push_async_callback(services.comparisons.close)
@@ -101,7 +106,7 @@ def _lifespan(settings: Settings) -> Callable[[FastAPI], Any]:
     return lifespan
 
 
-def _build(settings: Settings, folder: Path, database: Database) -> Services:
+def _build(settings: Settings, folder: Path, database: Database, scenes: SceneServer) -> Services:
     rig_store = RigStore(folder / "rigs")
     trajectory_store = TrajectoryStore(database, folder / "trajectories")
     plan_store = PlanStore(database, folder / "plans")
@@ -110,6 +115,11 @@ def _build(settings: Settings, folder: Path, database: Database) -> Services:
 
     def directory(rig: str) -> Path:
         return rig_store.folder / rig
+
+    def latest(rig: str) -> Any:
+        host = hosts.get(rig)
+        rows = None if host is None else host.latest()
+        return None if rows is None else rows[0]
 
     def config(rig: str) -> RigConfig:
         return RigConfig(rig, rig_store.get(rig).rig, directory(rig), run_folder, rate_hz=settings.rig_rate_hz)
@@ -133,6 +143,7 @@ def _build(settings: Settings, folder: Path, database: Database) -> Services:
             start=None if start is None else (float(start[0]), float(start[1]), float(start[2]), float(start[3])),
         )
 
+    hosts = RigHosts(rig_store, config, directory)
     return Services(
         settings=settings,
         database=database,
@@ -142,8 +153,9 @@ def _build(settings: Settings, folder: Path, database: Database) -> Services:
         queue=PlanQueue(plan_store, request),
         comparisons=Comparisons(folder / "comparisons"),
         audit=AuditLog(database),
-        hosts=RigHosts(rig_store, config, directory),
+        hosts=hosts,
         runs=RunFiles(run_folder),
+        scenes=ScenesOnDemand(scenes, rig_store, latest),
     )
 
 
@@ -160,21 +172,12 @@ def _lock(folder: Path) -> int:
 
 
 async def _scene(connection: HTTPConnection, rig: str) -> None:
-    """Start the scene of a rig when it is first looked at."""
-    services: Services = connection.app.state.services
-    scenes: SceneServer = connection.app.state.scenes
-    if rig not in scenes.names():
-        await asyncio.to_thread(_start_scene, services, scenes, rig)
+    """Start a scene when it is first looked at."""
+    scenes: ScenesOnDemand = connection.app.state.on_demand
+    if not scenes.running(rig):
+        await asyncio.to_thread(scenes.open, rig)
 
 
-def _start_scene(services: Services, scenes: SceneServer, rig: str) -> None:
-    entry = services.rigs.get(rig)
-
-    def latest() -> Any:
-        host = services.hosts.get(rig)
-        rows = None if host is None else host.latest()
-        return None if rows is None else rows[0]
-
-    with services.scene_lock:
-        if rig not in scenes.names():
-            scenes.start(entry.rig, entry.payload, rig, latest, services.rigs.folder)
+async def _scene_problem(request: Request, error: Exception) -> Response:
+    code, status = ("payload-mesh", 422) if isinstance(error, PayloadMeshError) else ("scene", 404)
+    return problem_response(ApiError(status, code, str(error)).problem, request)

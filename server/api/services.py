@@ -1,12 +1,13 @@
 """What the routes work with: one object, built by the app's lifespan, reached through `Annotated` dependencies."""
 
 import re
-import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, Any, Protocol
 
 from fastapi import Depends, Header
+from numpy.typing import ArrayLike
 from starlette.requests import HTTPConnection
 
 from server.api.hosts import RigHosts
@@ -20,6 +21,19 @@ from server.store.plan_queue import PlanQueue
 from server.store.plans import PlanStore
 from server.store.rig_file import RigStore
 from server.store.trajectories import TrajectoryStore
+
+
+class Scenes(Protocol):
+    """What the routes need of the scenes, which are another layer's (server/scene/on_demand.py); blocking."""
+
+    def show_pose(self, rig: str, angles: ArrayLike | None, target: ArrayLike | None = None) -> None:
+        """Show a planned pose (4,) [rad] with its attitude (4,) beside the rig; None takes it away."""
+
+    def add(self, name: str, rig: str, latest: Callable[[], Any]) -> None:
+        """Give the samples of `latest` a scene called `name`."""
+
+    def remove(self, name: str) -> None:
+        """Take an added scene away."""
 
 
 @dataclass
@@ -36,8 +50,8 @@ class Services:
     audit: AuditLog
     hosts: RigHosts
     runs: RunFiles
+    scenes: Scenes
     started: float = field(default_factory=time.time)
-    scene_lock: threading.Lock = field(default_factory=threading.Lock)
 
 
 def _services(connection: HTTPConnection) -> Services:

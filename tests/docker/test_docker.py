@@ -5,6 +5,7 @@ import json
 import re
 import runpy
 import shlex
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -182,7 +183,8 @@ def test_caddy_reaches_the_service_and_asks_for_a_password() -> None:
 
 
 @pytest.mark.slow
-def test_warming_runs_every_method(capsys: pytest.CaptureFixture[str]) -> None:
+def test_warming_runs_every_method(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["warm.py"])
     runpy.run_path(str(DOCKER / "warm.py"), run_name="__main__")
     lines = capsys.readouterr().out.splitlines()
     assert [line.split(":")[0] for line in lines[:-1]] == list(method_names())
