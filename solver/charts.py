@@ -11,19 +11,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
+from solver._jit import inlined, inner
 
 Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 
-@kernel
+@inlined
 def nearest(angle: float, reference: float) -> float:
     """The angle, plus whole turns, nearest to `reference` [rad]."""
     return angle + TURN * float(np.rint((reference - angle) / TURN))
 
 
-@kernel
+@inlined
 def base_chart(horizontal: bool, C: Array, d1: float, branch: float, d: Array) -> None:
     """d <- the solution with base angle d1 and sign(cos d3) = branch (+1 or -1), angles in (-pi, pi] but d1 itself.
 
@@ -57,7 +57,7 @@ def base_chart(horizontal: bool, C: Array, d1: float, branch: float, d: Array) -
         d[1] = -d[1]
 
 
-@kernel
+@inlined
 def inner_chart(horizontal: bool, C: Array, d4: float, branch: float, d: Array) -> None:
     """d <- the solution with inner angle d4 and sign(sin d2) = branch (+1 or -1, of the vertical rig's d2).
 
@@ -91,7 +91,7 @@ def inner_chart(horizontal: bool, C: Array, d4: float, branch: float, d: Array) 
         d[1] = -d[1]
 
 
-@kernel
+@inner
 def project(horizontal: bool, C: Array, near: Array, d: Array) -> None:
     """d <- an exact solution for C next to `near`, in the chart that is farther from its fold.
 

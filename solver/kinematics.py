@@ -9,12 +9,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
+from solver._jit import inlined, inner, kernel
 
 Array = NDArray[np.float64]
 
 
-@kernel
+@inlined
 def turn(axis: int, angle: float, M: Array) -> None:
     """M <- R_axis(angle) M, in place; M (3, k). An absent axis leaves M as it is."""
     if axis < 0:
@@ -30,7 +30,7 @@ def turn(axis: int, angle: float, M: Array) -> None:
         M[j, k] = c * b - s * a
 
 
-@kernel
+@inner
 def payload_attitude(axes: NDArray[np.int64], d: Array, F: Array) -> None:
     """F <- R4(d4) R3(d3) R2(d2) R1(d1), body from reference. d (4,) [rad], F (3, 3)."""
     for i in range(3):
@@ -40,7 +40,7 @@ def payload_attitude(axes: NDArray[np.int64], d: Array, F: Array) -> None:
         turn(axes[i], d[i], F)
 
 
-@kernel
+@inner
 def jacobian(axes: NDArray[np.int64], d: Array, J: Array) -> None:
     """J <- the body rate per frame rate, w = J d'; column i is R4..R(i+1) e_i. d (4,) [rad], J (3, 4)."""
     for i in range(4):
@@ -53,7 +53,7 @@ def jacobian(axes: NDArray[np.int64], d: Array, J: Array) -> None:
             turn(axes[k], d[k], J[:, i : i + 1])
 
 
-@kernel
+@inlined
 def null_vector(J: Array, n: Array) -> float:
     """n <- the unit vector with J n = 0, from the signed 3x3 minors of J; returns the minors' norm.
 
@@ -76,6 +76,74 @@ def null_vector(J: Array, n: Array) -> float:
     return norm
 
 
+@inlined
+def self_motion(horizontal: bool, d: Array, n: Array) -> float:
+    """`null_vector` of the Jacobian of a four-axis rig in closed form, but for the sign. d (4,) [rad], n (4,).
+
+    n = (-cos d3, sin d2 sin d3, cos d2 cos d3, sin d2) / |..| of the vertical rig (METHODS, section 3); the horizontal
+    one's d2 counts the other way (see `charts`).
+    """
+    s2 = math.sin(d[1])
+    c3 = math.cos(d[2])
+    n[0] = -c3
+    n[1] = s2 * math.sin(d[2])
+    n[2] = math.cos(d[1]) * c3
+    n[3] = -s2 if horizontal else s2
+    norm = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3])
+    if norm > 0.0:
+        for i in range(4):
+            n[i] /= norm
+    return norm
+
+
+@inlined
+def four_axis_pose(horizontal: bool, d: Array, F: Array, J: Array, n: Array) -> float:
+    """F, J, n <- payload attitude, Jacobian and null vector of a four-axis rig; returns sqrt(det(J J^T)).
+
+    `payload_attitude`, `jacobian` and `null_vector` (but for its sign) multiplied out, each sine and cosine taken once.
+    Written for the vertical rig; the horizontal one sees y as z and z as -y, and its d2 counts the other way (see
+    `charts`). d (4,) [rad], F (3, 3), J (3, 4), n (4,).
+    """
+    c1 = math.cos(d[0])
+    s1 = math.sin(d[0])
+    c2 = math.cos(d[1])
+    s2 = math.sin(d[1])
+    c3 = math.cos(d[2])
+    s3 = math.sin(d[2])
+    c4 = math.cos(d[3])
+    s4 = math.sin(d[3])
+    volume = self_motion(horizontal, d, n)
+    y, z, side = (2, 1, -1.0) if horizontal else (1, 2, 1.0)
+    s2 *= side
+    J[0, 0] = c3 * s2
+    J[y, 0] = c4 * c2 + s4 * (s3 * s2)
+    J[z, 0] = side * (c4 * (s3 * s2) - s4 * c2)
+    J[0, 1] = -side * s3
+    J[y, 1] = side * (s4 * c3)
+    J[z, 1] = c4 * c3
+    J[0, 2] = 0.0
+    J[y, 2] = c4
+    J[z, 2] = -side * s4
+    J[0, 3] = 1.0
+    J[1, 3] = 0.0
+    J[2, 3] = 0.0
+    # F = R4 R3 R2 R1: R4 R3 R2 takes y to J's first column, z to its second (the vertical rig's) and x to a; R1 mixes
+    # x and z.
+    a0 = c3 * c2
+    ay = s4 * (s3 * c2) - c4 * s2
+    az = side * (c4 * (s3 * c2) + s4 * s2)
+    F[0, 0] = c1 * a0 - s1 * s3
+    F[y, 0] = c1 * ay + s1 * (s4 * c3)
+    F[z, 0] = c1 * az + s1 * side * (c4 * c3)
+    F[0, y] = J[0, 0]
+    F[y, y] = J[y, 0]
+    F[z, y] = J[z, 0]
+    F[0, z] = -side * (c1 * s3 + s1 * a0)
+    F[y, z] = side * (c1 * (s4 * c3) - s1 * ay)
+    F[z, z] = c1 * (c4 * c3) - side * (s1 * az)
+    return volume
+
+
 @kernel
 def singularity_measure(d: Array) -> float:
     """sin^2 d2 + cos^2 d3 of a four-axis rig: zero only at its singularity (METHODS, section 3). d (4,) [rad]."""
@@ -84,7 +152,7 @@ def singularity_measure(d: Array) -> float:
     return s * s + c * c
 
 
-@kernel
+@inlined
 def rotation_error(F: Array, C: Array, e: Array) -> float:
     """e <- the rotation vector of F C^T (body axes) [rad]; returns its length, the geodesic error [rad].
 

@@ -17,7 +17,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
+from solver._jit import inlined
 from solver.rig import Rig
 from solver.solution import limited_code
 
@@ -40,7 +40,7 @@ def limit_table(rig: Rig) -> Array:
     return np.stack([rig.position_min, rig.position_max, rig.max_rate, rig.max_acceleration, rig.weight, rig.home])
 
 
-@kernel
+@inlined
 def approach_rate(room: float, deceleration: float, h: float) -> float:
     """The highest rate over an interval `h` [s] after which `room` still suffices to brake [rad/s].
 
@@ -55,7 +55,7 @@ def approach_rate(room: float, deceleration: float, h: float) -> float:
     return room / h
 
 
-@kernel
+@inlined
 def limit_box(
     table: Array, d: Array, v: Array, h_past: float, h: float, lo: Array, hi: Array, lo_code: Codes, hi_code: Codes
 ) -> None:
@@ -101,7 +101,7 @@ def limit_box(
         hi_code[i] = top_code
 
 
-@kernel
+@inlined
 def tolerances(table: Array, h_past: float, h: float, out: Array) -> None:
     """out <- how far outside its box a frame may round [rad]: 1e-8 of the narrowest limit's width. out (4,)"""
     for i in range(4):
@@ -113,7 +113,7 @@ def tolerances(table: Array, h_past: float, h: float, out: Array) -> None:
         out[i] = 1e-8 * width
 
 
-@kernel
+@inlined
 def inside(x: Array, lo: Array, hi: Array, tolerance: Array) -> bool:
     """Whether lo <= x <= hi within the tolerance; false for nan. All (4,)."""
     for i in range(4):  # noqa: SIM110 - a generator would cost an allocation in the inner loop

@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
+from solver._jit import inlined, inner
 from solver.limits import inside
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ PARALLEL = 1e-12
 ACTIVE_SETS = 81  # each of four frames free, at its lower or at its upper bound
 
 
-@kernel
+@inlined
 def squared_damping(volume: float) -> float:
     """s^2 of the damped inverse, from sqrt(det J J^T): zero but next to the singularity."""
     if volume >= DAMPED_BELOW:
@@ -35,36 +35,32 @@ def squared_damping(volume: float) -> float:
     return MAX_DAMPING * MAX_DAMPING * (1.0 - ratio * ratio)
 
 
-@kernel
+@inner
 def solve_symmetric(A: Array, b: Array, n: int) -> bool:
-    """b <- A^-1 b by Cholesky, in place in the lower triangle of A; false where A is not positive definite. n <= 4."""
-    for j in range(n):
-        pivot = A[j, j]
-        for k in range(j):
-            pivot -= A[j, k] * A[j, k]
+    """b <- A^-1 b by A = L D L^T, in place in the lower triangle of A; false where A is not positive definite. n <= 4.
+
+    Row i of the triangle is left as L_ij D_j and 1 / D_i: no roots and one division a row, which are what takes long.
+    """
+    for i in range(n):
+        for j in range(i):
+            for k in range(j):
+                A[i, j] -= A[i, k] * A[j, k] * A[k, k]
+        pivot = A[i, i]
+        for k in range(i):
+            pivot -= A[i, k] * A[i, k] * A[k, k]
         if not pivot > 0.0:
             return False
-        root = math.sqrt(pivot)
-        A[j, j] = root
-        for i in range(j + 1, n):
-            value = A[i, j]
-            for k in range(j):
-                value -= A[i, k] * A[j, k]
-            A[i, j] = value / root
-    for i in range(n):
-        value = b[i]
+        A[i, i] = 1.0 / pivot
         for k in range(i):
-            value -= A[i, k] * b[k]
-        b[i] = value / A[i, i]
+            b[i] -= A[i, k] * A[k, k] * b[k]
     for i in range(n - 1, -1, -1):
-        value = b[i]
+        b[i] *= A[i, i]
         for k in range(i + 1, n):
-            value -= A[k, i] * b[k]
-        b[i] = value / A[i, i]
+            b[i] -= A[k, i] * A[i, i] * b[k]
     return True
 
 
-@kernel
+@inlined
 def least_norm(J: Array, weight: Array, g: Array, e: Array, damping: float, p: Array) -> None:
     """p <- g + W^-1 J^T (J W^-1 J^T + damping I)^-1 (e - J g), the step of least weighted distance from g.
 
@@ -107,7 +103,7 @@ def least_norm(J: Array, weight: Array, g: Array, e: Array, damping: float, p: A
         p[i] = g[i] + (J[0, i] * y0 + J[1, i] * y1 + J[2, i] * y2) / weight[i]
 
 
-@kernel
+@inlined
 def null_interval(y: Array, n: Array, lo: Array, hi: Array, tolerance: Array) -> tuple[float, float]:
     """(z_min, z_max) with lo <= y + n z <= hi; z_min > z_max where there is none. All (4,).
 
@@ -128,7 +124,7 @@ def null_interval(y: Array, n: Array, lo: Array, hi: Array, tolerance: Array) ->
     return z_min, z_max
 
 
-@kernel
+@inlined
 def clamp(z: float, z_min: float, z_max: float) -> float:
     """z inside [z_min, z_max]; the middle, which shares the excess, where the interval is empty but finite."""
     if z_min <= z_max:
@@ -138,7 +134,7 @@ def clamp(z: float, z_min: float, z_max: float) -> float:
     return 0.5 * (z_min + z_max)
 
 
-@kernel
+@inner
 def box_least_squares(J: Array, e: Array, damping: Array, g: Array, lo: Array, hi: Array, s: Array, A: Array) -> int:
     """s <- the step in [lo, hi] with the least |J s - e|^2 + sum damping (s - g)^2; returns the costliest bound.
 
@@ -247,7 +243,7 @@ def box_least_squares(J: Array, e: Array, damping: Array, g: Array, lo: Array, h
     return best_binding
 
 
-@kernel
+@inlined
 def quadratic_step(
     J: Array,
     n: Array,

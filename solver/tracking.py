@@ -14,9 +14,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
+from solver._jit import inlined, inner
 from solver.charts import project
-from solver.kinematics import jacobian, null_vector, payload_attitude, rotation_error
+from solver.kinematics import jacobian, null_vector, payload_attitude, rotation_error, self_motion
 from solver.limits import ACCELERATION, HOME, MAX, MIN, WEIGHT, Codes, approach_rate, inside, limit_box, tolerances
 from solver.solution import EXACT
 from solver.step import box_least_squares, clamp, null_interval, squared_damping
@@ -37,7 +37,7 @@ ALONG = 1e-2  # [rad] a slide this long is worth another: what it leaves is of t
 SHIFT = 1e-7  # damping of the least squares relative to the Jacobian's squares: picks one of many minima
 
 
-@kernel
+@inlined
 def wish(table: Array, d: Array, h: float, gains: Array, out: Array) -> None:
     """out <- the increment the frames would make of their own over `h` [rad], by the first three gains.
 
@@ -62,7 +62,7 @@ def wish(table: Array, d: Array, h: float, gains: Array, out: Array) -> None:
         out[2] -= gain * c3 * s3
 
 
-@kernel
+@inner
 def rotate_back(e: Array, C: Array, G: Array) -> None:
     """G <- exp(-[e]x) C, the attitude whose rotation error against C is e. e (3,) [rad], C, G (3, 3)."""
     angle = math.sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2])
@@ -86,8 +86,8 @@ def rotate_back(e: Array, C: Array, G: Array) -> None:
         G[2, k] = c2 - a * x2 + b * (e[0] * x1 - e[1] * x0)
 
 
-@kernel
-def goal(
+@inlined
+def goal_from(
     table: Array,
     axes: NDArray[np.int64],
     state: Array,
@@ -101,9 +101,8 @@ def goal(
 ) -> bool:
     """G <- the attitude to go for at the next sample: C, or on the way back to it; e <- the increment to G [rad].
 
-    F <- the attitude now. Returns whether G is C. recovery: share of the smallest frame acceleration.
+    F (3, 3) is the attitude now. Returns whether G is C. recovery: share of the smallest frame acceleration.
     """
-    payload_attitude(axes, state[0:4], F)
     recovering = False
     if state[CODE] != EXACT:
         behind = rotation_error(F, target, e)
@@ -125,8 +124,26 @@ def goal(
     return not recovering
 
 
-@kernel
-def settle(horizontal: bool, axes: NDArray[np.int64], weight: Array, d: Array, G: Array, J: Array, work: Array) -> int:
+@inner
+def goal(
+    table: Array,
+    axes: NDArray[np.int64],
+    state: Array,
+    target: Array,
+    C: Array,
+    h: float,
+    recovery: float,
+    F: Array,
+    G: Array,
+    e: Array,
+) -> bool:
+    """`goal_from` with F <- the attitude now."""
+    payload_attitude(axes, state[0:4], F)
+    return goal_from(table, axes, state, target, C, h, recovery, F, G, e)
+
+
+@inner
+def settle(horizontal: bool, weight: Array, d: Array, G: Array, work: Array) -> int:
     """work[POSE] <- the exact pose for G inside the box nearest to d + g (weighted), from work[GUESS].
 
     Returns how many times the pose was slid along the curve; 0 where no pose inside the box was found.
@@ -137,8 +154,7 @@ def settle(horizontal: bool, axes: NDArray[np.int64], weight: Array, d: Array, G
     hi = work[HI]
     project(horizontal, G, work[GUESS], y)
     for k in range(1, SLIDES + 1):
-        jacobian(axes, y, J)
-        null_vector(J, n)
+        self_motion(horizontal, y, n)
         along = 0.0
         norm = 0.0
         for i in range(4):
@@ -154,7 +170,7 @@ def settle(horizontal: bool, axes: NDArray[np.int64], weight: Array, d: Array, G
     return 0
 
 
-@kernel
+@inner
 def binding_code(binding: int, lo_code: Codes, hi_code: Codes) -> int:
     """The `limited_code` of a bound as `box_least_squares` numbers them; `EXACT` where none binds."""
     if binding == 0:
@@ -163,7 +179,7 @@ def binding_code(binding: int, lo_code: Codes, hi_code: Codes) -> int:
     return int(hi_code[frame] if (binding - 1) % 2 == 1 else lo_code[frame])
 
 
-@kernel
+@inner
 def outermost_code(x: Array, lo: Array, hi: Array, lo_code: Codes, hi_code: Codes) -> int:
     """The `limited_code` of the bound that x (4,) is farthest beyond."""
     farthest = -np.inf
@@ -178,7 +194,7 @@ def outermost_code(x: Array, lo: Array, hi: Array, lo_code: Codes, hi_code: Code
     return code
 
 
-@kernel
+@inner
 def give_way(
     axes: NDArray[np.int64],
     table: Array,
@@ -221,7 +237,7 @@ def give_way(
     return binding_code(binding, lo_code, hi_code)
 
 
-@kernel
+@inner
 def finish(
     horizontal: bool,
     axes: NDArray[np.int64],
@@ -239,7 +255,7 @@ def finish(
 ) -> tuple[int, int]:
     """work[POSE] <- the sample, from the method's proposal work[GUESS]; returns (slides along the curve, code)."""
     d = state[0:4]
-    slides = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
+    slides = settle(horizontal, table[WEIGHT], d, G, work)
     code = EXACT
     if slides == 0:
         missed = outermost_code(work[POSE], work[LO], work[HI], lo_code, hi_code)
@@ -247,7 +263,7 @@ def finish(
         if code == EXACT:
             code = missed  # next to the singularity the frames may be free to move and yet not get there
         # The nearest pose may be exact after all, where it was only the way to it that missed the box.
-        slides = settle(horizontal, axes, table[WEIGHT], d, G, J, work)
+        slides = settle(horizontal, table[WEIGHT], d, G, work)
         if slides == 0:
             for i in range(4):
                 work[POSE, i] = work[GUESS, i]
@@ -256,7 +272,7 @@ def finish(
     return slides, code
 
 
-@kernel
+@inlined
 def advance(state: Array, target: Array, time: float, x: Array, code: int, C: Array) -> None:
     """Take the sample x (4,) [rad] at `time` [s] into the state; `code` is its mark, C (3, 3) its target."""
     h = time - state[CLOCK]
@@ -276,7 +292,7 @@ def advance(state: Array, target: Array, time: float, x: Array, code: int, C: Ar
             target[i, j] = C[i, j]
 
 
-@kernel
+@inlined
 def prepare(table: Array, state: Array, h: float, work: Array, lo_code: Codes, hi_code: Codes) -> None:
     """work[LO], work[HI], work[TOLERANCE] <- the box of the next sample, `h` [s] ahead."""
     past = state[PAST] if state[PHASE] == MOVING else 0.0

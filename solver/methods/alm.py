@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
+from solver._jit import inner, kernel
 from solver.errors import MethodError
-from solver.kinematics import jacobian, null_vector, rotation_error
+from solver.kinematics import four_axis_pose, rotation_error
 from solver.limits import WEIGHT, limit_table
 from solver.methods.base import Block, StepMethod
 from solver.rig import Rig
@@ -39,7 +39,7 @@ from solver.tracking import (
     advance,
     binding_code,
     finish,
-    goal,
+    goal_from,
     new_state,
     outermost_code,
     prepare,
@@ -99,7 +99,7 @@ MULTIPLIER_ROWS = 7
 MOST_CHANGES = 5  # of the active bounds between two updates of the multipliers
 
 
-@kernel
+@inner
 def active_bounds(room: Array, r: float, lo: Array, hi: Array, s: Array) -> int:
     """Base 3, a digit a frame: no bound's term in M counts at s, the lower one's does (1), the upper one's (2)."""
     active = 0
@@ -112,7 +112,7 @@ def active_bounds(room: Array, r: float, lo: Array, hi: Array, s: Array) -> int:
     return active
 
 
-@kernel
+@inner
 def multiplier_step(
     J: Array, weight: Array, g: Array, e: Array, lo: Array, hi: Array, tuning: Array, room: Array, s: Array
 ) -> int:
@@ -179,7 +179,7 @@ def multiplier_step(
     return -int(tuning[4])
 
 
-@kernel
+@inner
 def reaches(J: Array, s: Array, e: Array, residual: float) -> bool:
     """Whether the step s (4,) makes the increment e (3,) [rad], to a thousandth of it or the residual."""
     for k in range(3):
@@ -232,12 +232,12 @@ def alm_block(
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
             wish(table, d, h, gains, work[WISH])
+            volume = four_axis_pose(horizontal, d, F, J, work[NULL])
             on_target = True
             if feedback:
-                on_target = goal(table, axes, state, target, C, h, gains[3], F, G, e)
+                on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
             else:
                 rotation_error(C, target, e)
-            jacobian(axes, d, J)
             for i in range(4):
                 work[LO, i] -= d[i]
                 work[HI, i] -= d[i]
@@ -246,7 +246,6 @@ def alm_block(
             code = EXACT
             if count < 0 and not exact:
                 # Not settled: no step inside the box has this increment.
-                volume = null_vector(J, work[NULL])
                 for i in range(4):
                     work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
                 binding = box_least_squares(J, e, work[DAMPING], work[WISH], work[LO], work[HI], work[STEP], A)

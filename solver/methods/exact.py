@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from solver._jit import kernel
 from solver.errors import MethodError
-from solver.kinematics import jacobian, null_vector
+from solver.kinematics import four_axis_pose
 from solver.limits import WEIGHT, limit_table
 from solver.methods.base import Block, StepMethod
 from solver.rig import Rig
@@ -28,7 +28,7 @@ from solver.tracking import (
     WISH,
     advance,
     finish,
-    goal,
+    goal_from,
     new_state,
     prepare,
     wish,
@@ -100,9 +100,8 @@ def exact_block(
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
             wish(table, d, h, gains, work[WISH])
-            on_target = goal(table, axes, state, target, C, h, gains[3], F, G, e)
-            jacobian(axes, d, J)
-            volume = null_vector(J, work[NULL])
+            volume = four_axis_pose(horizontal, d, F, J, work[NULL])
+            on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
             quadratic_step(
                 J, work[NULL], volume, table[WEIGHT], d, work[WISH], e, work[LO], work[HI], work[TOLERANCE], work[GUESS]
             )

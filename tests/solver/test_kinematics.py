@@ -11,12 +11,14 @@ from scipy.spatial.transform import Rotation
 from bench.mjcf import mjcf
 from solver.attitude import euler_from_dcm
 from solver.kinematics import (
+    four_axis_pose,
     jacobian,
     matrix_error,
     null_vector,
     payload_attitude,
     payload_attitudes,
     rotation_error,
+    self_motion,
     singularity_measure,
 )
 from solver.rig import FRAMES, Rig, builtin_rigs
@@ -91,6 +93,22 @@ def test_null_vector(name: str, d: NDArray[np.float64]) -> None:
     np.testing.assert_allclose(volume**2, np.linalg.det(J @ J.T), atol=1e-13)
     if volume > 0.0:
         np.testing.assert_allclose(np.linalg.norm(n), 1.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("name", FOUR)
+@given(d=ANGLES)
+def test_the_closed_forms_are_the_products_multiplied_out(name: str, d: NDArray[np.float64]) -> None:
+    rig = RIGS[name]
+    F, J, n, along = np.empty((3, 3)), np.empty((3, 4)), np.empty(4), np.empty(4)
+    volume = four_axis_pose(rig.geometry.horizontal, d, F, J, n)
+    np.testing.assert_allclose(F, attitude_of(rig, d), rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose(J, jacobian_of(rig, d), rtol=0.0, atol=1e-15)
+    assert volume == pytest.approx(null_vector(J, along), abs=1e-15)
+    if volume > 0.0:
+        np.testing.assert_allclose(np.linalg.norm(n), 1.0, atol=1e-14)
+        assert np.abs(J @ n).max() * volume <= 1e-15  # the direction is lost where the volume is
+    assert self_motion(rig.geometry.horizontal, d, along) == volume
+    np.testing.assert_array_equal(along, n)
 
 
 @given(d=ANGLES)

@@ -114,13 +114,12 @@ def test_settle_finds_a_pose_inside_a_box_that_holds_one(d: Array, seed: int) ->
         return
     random = np.random.default_rng(seed)
     C = payload_attitudes(RIG, d[None])[0]
-    J = np.empty((3, 4))
     there = work_for(d, np.inf, np.zeros(4))
     there[WISH] = 1e-3 * random.normal(size=4)
-    assert settle(False, RIG.axes, np.ones(4), d, C, J, there) > 0
+    assert settle(False, np.ones(4), d, C, there) > 0
     work = work_for(there[POSE], 1e-6, np.zeros(4))
     work[GUESS] = d
-    assert settle(False, RIG.axes, np.ones(4), d, C, J, work) > 0
+    assert settle(False, np.ones(4), d, C, work) > 0
     assert np.all(np.abs(work[POSE] - there[POSE]) <= 1e-6 + 1e-12)
     assert np.abs(payload_attitudes(RIG, work[POSE][None])[0] - C).max() < 1e-14
 
@@ -129,7 +128,7 @@ def test_settle_says_when_the_box_holds_none() -> None:
     d = np.array([0.1, 0.4, 0.2, -0.3])
     C = payload_attitudes(RIG, d[None])[0]
     work = work_for(d, 1e-6, np.array([1e-3, 1e-3, 1e-3, 1e-3]))
-    assert settle(False, RIG.axes, np.ones(4), d, C, np.empty((3, 4)), work) == 0
+    assert settle(False, np.ones(4), d, C, work) == 0
 
 
 def test_give_way_goes_as_far_as_it_may_and_names_what_binds() -> None:
