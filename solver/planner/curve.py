@@ -17,6 +17,7 @@ from solver.kinematics import jacobian, payload_attitude, rotation_error
 
 Array = NDArray[np.float64]
 DAMPING = 1e-14  # least damping of the projection: rounding may move a singular pose by 1e-9 rad, no more
+LOCKED = 1e-4  # [rad] a frame with a range below does not move: the others follow from it
 POLISHED = 1e-10  # [rad] the last digits; a chart that moves a pose by more is next to its fold
 
 
@@ -86,6 +87,33 @@ def closest_all(axes: NDArray[np.int64], horizontal: bool, attitude: Array, d: A
             project(horizontal, attitude[k], near, d[k])
             fallen += 1
     return fallen
+
+
+@kernel
+def hold_locked(horizontal: bool, axes: NDArray[np.int64], attitude: Array, low: Array, high: Array, d: Array) -> None:
+    """Slide every row of d (n, 4) along the solutions to where its locked frame is in the middle of its range, in place.
+
+    low, high (4,) [rad]. Of several locked frames the one that the self-motion moves most; where none is moved by it,
+    nothing is done.
+    """
+    null = np.empty((1, 4))
+    for k in range(d.shape[0]):
+        for _ in range(20):
+            null_vectors(horizontal, d[k : k + 1], null)
+            frame = -1
+            for i in range(4):
+                if high[i] - low[i] < LOCKED and axes[i] >= 0 and abs(null[0, i]) > 1e-3:
+                    if frame < 0 or abs(null[0, i]) > abs(null[0, frame]):
+                        frame = i
+            if frame < 0:
+                break
+            gap = 0.5 * (low[frame] + high[frame]) - d[k, frame]
+            if abs(gap) < 1e-15:
+                break
+            along = min(max(gap / null[0, frame], -0.2), 0.2)
+            for i in range(4):
+                d[k, i] += along * null[0, i]
+            closest(axes, attitude[k], d[k])
 
 
 @kernel

@@ -2,7 +2,8 @@
 
 Each frame's rate goes from zero to the flight's along a curve with a plateau of acceleration in the middle and the
 flight's acceleration at its end, so that angles, rates and accelerations are continuous. Each frame takes the
-shortest time for which its sampled lead, the joint with the flight included, keeps inside its limits.
+shortest time, but a tenth of a second where there is room for it, for which its sampled lead, the joint with the flight
+included, keeps inside its limits.
 """
 
 import math
@@ -14,7 +15,7 @@ from solver.planner.refine import MET
 from solver.rig import FRAMES, LIMITS, Rig
 
 Array = NDArray[np.float64]
-LONGEST = 120.0  # [s]
+GENTLE, LONGEST = 0.1, 120.0  # [s]
 EDGE = 0.25  # share of the lead in which the deceleration rises, and in which it falls
 AT_REST = 1e-9  # of a limit: rates and accelerations below this need no lead
 
@@ -60,28 +61,33 @@ def _frame_way(
     t: Array, x: Array, rate: float, bend: float, h: float, rig: Rig, frame: int
 ) -> tuple[Array, int]:
     """(angles (m,) [rad] of one frame on its way to rest, -) or (empty, the limit that closes the way)."""
-    low, high = float(rig.position_min[frame]), float(rig.position_max[frame])
-    top, deceleration = float(rig.max_rate[frame]) * (1.0 + MET), float(rig.max_acceleration[frame]) * (1.0 + MET)
-    T = max(4.0 * h, 1.1 * abs(rate) / min(deceleration, 1e6))
-    closed = 0
-    while T < LONGEST:
-        m = max(4, math.ceil(T / h))
-        s = np.arange(1, m + 1) / m
-        way = x[-1] + _way(s, rate, bend, m * h)
-        path = np.r_[x, way, way[-1], way[-1]]
-        v = np.diff(path) / np.r_[np.diff(t), np.full(m + 2, h)]
-        a = np.diff(v) / np.r_[0.5 * (t[2:] - t[:-2]), np.full(m + 2, h)]
-        if np.abs(a).max() > deceleration:
-            closed = 2
-        elif np.abs(v).max() > top:
-            closed = 1
-        elif way.max() > high or way.min() < low:
-            closed = 0
-            break  # longer is farther
-        else:
-            return way, closed
-        T = 1.04 * T + h
+    shortest = max(4.0 * h, 1.1 * abs(rate) / min(float(rig.max_acceleration[frame]), 1e6))
+    for T in (max(shortest, GENTLE), shortest):  # hurried only where there is no room for better
+        closed = 1
+        while T < LONGEST:
+            m = max(4, math.ceil(T / h))
+            way = x[-1] + _way(np.arange(1, m + 1) / m, rate, bend, m * h)
+            limit = _outside(t, np.r_[x, way, way[-1], way[-1]], m + 2, h, rig, frame)
+            if limit is None:
+                return way, closed
+            closed = limit
+            if limit == 0:
+                break  # longer is farther
+            T = 1.04 * T + h
     return np.empty(0), closed
+
+
+def _outside(t: Array, path: Array, added: int, h: float, rig: Rig, frame: int) -> int | None:
+    """The limit of the frame that the path, `added` samples of interval h after those at t, is outside of, or None."""
+    v = np.diff(path) / np.r_[np.diff(t), np.full(added, h)]
+    a = np.diff(v) / np.r_[0.5 * (t[2:] - t[:-2]), np.full(added, h)]
+    if np.abs(a).max() > rig.max_acceleration[frame] * (1.0 + MET):
+        return 2
+    if np.abs(v).max() > rig.max_rate[frame] * (1.0 + MET):
+        return 1
+    if path.max() > rig.position_max[frame] or path.min() < rig.position_min[frame]:
+        return 0
+    return None
 
 
 def _way(s: Array, rate: float, bend: float, T: float) -> Array:

@@ -19,6 +19,7 @@ from solver.rig import Rig
 
 Array = NDArray[np.float64]
 OVERLAP = 0.8  # share of the other chart's measure from which a chart is used
+NARROW = 3.0  # grid steps; a range below may hold no node
 CLEARANCE = 1e-4  # sin^2 d2 + cos^2 d3 below which a point is no node: half a degree from the singularity
 
 
@@ -49,10 +50,13 @@ def lattice(rig: Rig, grid: float, counted: NDArray[np.bool_] | None = None, sla
 
     A frame with a range below one turn has one copy of every angle and is never ambiguous. One of a turn or more is
     first taken as free; only where the unwrapped result leaves its range must its turns be counted. `slack` [rad]
-    widens the ranges.
+    widens the ranges. A range that the grid may step over altogether is widened by a step; the refinement sees to it.
     """
-    low = rig.position_min - slack
-    high = rig.position_max + slack
+    size = max(8, round(TURN / grid))
+    narrow = rig.position_max - rig.position_min < NARROW * TURN / size
+    slack_of = np.where(narrow, max(slack, TURN / size), slack)
+    low = rig.position_min - slack_of
+    high = rig.position_max + slack_of
     span = high - low
     wraps = span >= TURN
     if counted is not None:
@@ -60,7 +64,7 @@ def lattice(rig: Rig, grid: float, counted: NDArray[np.bool_] | None = None, sla
     copies = np.where(wraps | (span < TURN), 1.0, np.floor(np.where(wraps, 0.0, span) / TURN + 1e-12) + 1.0)
     return Lattice(
         horizontal=rig.geometry.horizontal,
-        size=max(8, round(TURN / grid)),
+        size=size,
         low=np.where(wraps, -math.pi, low),
         high=np.where(wraps, math.inf, high),
         wraps=wraps,

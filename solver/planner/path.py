@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from solver._jit import kernel
 from solver.planner.chain import Chain
-from solver.planner.curve import closest_all, smoothed, spline_rows, spline_slopes
+from solver.planner.curve import closest_all, hold_locked, smoothed, spline_rows, spline_slopes
 from solver.planner.options import PlanOptions
 from solver.planner.refine import MET, Refined, refine, rig_limits, worst
 from solver.rig import Rig
@@ -51,6 +51,7 @@ def smooth_curve(
     if len(samples) < 2:
         d[:] = points[0]
         closest_all(rig.axes, rig.geometry.horizontal, attitude, d)
+        hold_locked(rig.geometry.horizontal, rig.axes, attitude, rig.position_min, rig.position_max, d)
         return d
     spacing = float(np.diff(knots).mean())
     fastest = JUMP * np.minimum(rig.max_rate, 100.0)
@@ -60,6 +61,7 @@ def smooth_curve(
             y[0] = start
         spline_rows(knots, y, spline_slopes(knots, y), time, d)
         closest_all(rig.axes, rig.geometry.horizontal, attitude, d)
+        hold_locked(rig.geometry.horizontal, rig.axes, attitude, rig.position_min, rig.position_max, d)
         if not jumps(time, d, fastest):
             break
     if start is not None:

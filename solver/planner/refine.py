@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from solver.planner.basis import Basis, spline_basis
 from solver.planner.chain import reference_rates
-from solver.planner.curve import closest_all, null_vectors
+from solver.planner.curve import LOCKED, closest_all, null_vectors
 from solver.planner.options import PlanOptions
 from solver.planner.programme import Equality, QuadraticProgramme, solve_programme
 from solver.planner.rows import ROW, Flags, cost_bands, difference, displaced, fill_row, limit_rows, over_limits
@@ -42,8 +42,9 @@ class Limits:
 
 
 def rig_limits(rig: Rig, reserve: float = 0.0) -> Limits:
-    """The rig's limits with `reserve` (a share of them) unused; positions keep 1e-5 rad clear of their ends."""
-    clear = 1e-5 if reserve > 0.0 else 0.0
+    """The rig's limits with `reserve` (a share of them) unused; positions keep 1e-5 rad clear of their ends at most."""
+    span = rig.position_max - rig.position_min
+    clear = np.minimum(1e-5, 0.1 * span) if reserve > 0.0 else 0.0
     return Limits(
         rig.position_min + clear, rig.position_max - clear,
         rig.max_rate * (1.0 - reserve), rig.max_acceleration * (1.0 - reserve),
@@ -87,13 +88,13 @@ def refine(
     """One window: time (n,), attitude (n, 3, 3), angles (n, 4) exact poses to begin with.
 
     `pinned` ends keep value, slope and bend; `start` keeps the first pose, `start_rate` (4,) [rad/s] the rate of the
-    first interval. `ends` are where a lead from or to rest must find room. Only the first `judged` samples count for the verdict of the window.
+    first interval. A rig with a locked frame leaves nothing to refine. `ends` are where a lead from or to rest must find room. Only the first `judged` samples count for the verdict of the window.
     """
     n = len(time)
     limits = rig_limits(rig, options.reserve)
     true_limits = rig_limits(rig)
     d = angles.copy()
-    if n < 2:
+    if n < 2 or (rig.position_max - rig.position_min < LOCKED)[list(rig.geometry.frames)].any():
         return Refined(d, *worst(time, d, true_limits), 0)
     horizontal = rig.geometry.horizontal
     basis = spline_basis(time, options.knot)

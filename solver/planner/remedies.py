@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from solver.attitude import dcm_from_quaternion, quaternion_from_dcm
 from solver.errors import InputError
+from solver.planner.curve import LOCKED
 from solver.planner.options import PlanOptions
 from solver.planner.verdict import Margins
 from solver.planner.whole import Plan, plan
@@ -173,11 +174,11 @@ def offset(
 
 
 def smallest_share(margins: Margins, rig: Rig) -> float:
-    """The smallest margin of all as a share of its limit (positions: of half the range); inf without limits."""
+    """The smallest margin of all as a share of its limit (positions: of half the range, locked frames apart)."""
     half = np.where(np.isfinite(rig.position_max), 0.5 * (rig.position_max - rig.position_min), 1.0)
     shares = np.concatenate(
         [
-            (margins.position[:, 0] / half)[half > 0.0],
+            (margins.position[:, 0] / half)[half > LOCKED],
             (margins.rate[:, 0] / np.where(np.isfinite(rig.max_rate), rig.max_rate, 1.0)),
             (margins.acceleration[:, 0] / np.where(np.isfinite(rig.max_acceleration), rig.max_acceleration, 1.0)),
         ]

@@ -277,6 +277,7 @@ def _finished(
         kept = np.ascontiguousarray(angles[exact])
         polish(rig.geometry.horizontal, np.ascontiguousarray(attitude[exact]), kept)
         angles[exact] = kept
+        angles[~exact] = np.clip(angles[~exact], rig.position_min, rig.position_max)  # the last 1e-9 rad
     found = check(time, attitude, angles, rig)
     blocking, decided_by = flown.blocking, flown.decided_by
     if blocking is None and found.violations:

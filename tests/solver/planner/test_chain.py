@@ -1,0 +1,109 @@
+"""The dynamic programme against an exhaustive search that shares nothing with it but the nodes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solver.attitude import dcm_from_euler, dcm_from_quaternion
+from solver.planner.chain import Programme, reference_rates
+from solver.planner.nodes import lattice
+from solver.planner.options import PlanOptions
+from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
+from solver.scenarios import random_flight
+from solver.verify import payload_attitudes
+
+DEG = np.pi / 180.0
+LIMITED = builtin_rigs()["vertical-limited"]
+TURN = 2.0 * np.pi
+
+
+def programme(rig, seed=3, stages=8, grid=12.0, rate=60.0, interval=0.1, **changes):
+    t, q = random_flight(seed, interval * (stages - 1), 1.0 / interval, rate * DEG)
+    options = replace(PlanOptions(), **changes)
+    return Programme(t, dcm_from_quaternion(q), rig, lattice(rig, grid * DEG), options)
+
+
+def brute_force(p):
+    """The least cost by dense matrices over all pairs of nodes, inf where there is no chain."""
+    position, cost, alive = p.nodes(0)
+    best = np.where(alive, cost, np.inf)
+    rates = reference_rates(p.rig)
+    for k in range(1, len(p.time)):
+        ahead, cost, alive = p.nodes(k)
+        gap = ahead[None, :, :] - position[:, None, :]
+        gap -= np.where(p.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
+        dt = p.time[k] - p.time[k - 1]
+        allowed = (np.abs(gap) <= p.rig.max_rate * dt + p.slack).all(axis=2)
+        edges = (p.rig.weight * (gap / rates) ** 2).sum(axis=2) / dt
+        total = best[:, None] + np.where(allowed, edges, np.inf)
+        best = np.where(alive, total.min(axis=0) + cost, np.inf)
+        position = ahead
+    return best.min()
+
+
+@pytest.mark.parametrize("geometry", [Geometry.VERTICAL_4, Geometry.HORIZONTAL_4])
+@pytest.mark.parametrize("rate", [30.0, 90.0, 200.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_same_cost_as_the_search_over_all_pairs(geometry, rate, seed):
+    frames = tuple(FrameLimits(-s * DEG, s * DEG, r * DEG) for s, r in ((170, 200), (170, 250), (100, 250), (60, 600)))
+    p = programme(Rig("r", geometry, frames), seed=seed, rate=rate)
+    expected = brute_force(p)
+    chain = p.run()
+    assert chain.found == np.isfinite(expected)
+    if chain.found:
+        assert chain.cost == pytest.approx(expected, rel=1e-12)
+
+
+def test_chain_is_exact_continuous_and_within_the_rates():
+    p = programme(LIMITED, stages=100, grid=2.0, interval=0.05)
+    chain = p.run()
+    assert chain.found
+    assert np.abs(payload_attitudes(LIMITED, chain.angles) - p.attitude).max() < 2e-13
+    assert (np.abs(np.diff(chain.angles, axis=0)) <= LIMITED.max_rate * 0.05 * (1 + 1e-9)).all()
+    assert (np.abs(chain.angles[:, 3]) <= 60 * DEG).all()
+
+
+def test_pointers_computed_again_give_the_same_chain(monkeypatch):
+    p = programme(LIMITED, stages=200, grid=6.0, interval=0.05)
+    once = p.run()
+    monkeypatch.setattr("solver.planner.chain.BACK_BYTES", 1)  # blocks of 64 stages
+    again = p.run()
+    assert np.array_equal(once.angles, again.angles)
+
+
+def test_the_frontier_names_the_rate_that_closed_it():
+    time = np.arange(0.0, 1.01, 0.05)
+    C = dcm_from_euler(0.0, 200 * DEG * np.clip(time - 0.5, 0, None), 0.0)  # pitch alone, from half a second on
+    slow = FrameLimits(-50 * DEG, 50 * DEG, 40 * DEG)
+    rig = Rig("slow", Geometry.VERTICAL_4, (slow, FrameLimits(max_rate=60 * DEG), slow, slow))
+    chain = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
+    assert not chain.found
+    assert 0.5 < time[chain.reached] < 0.8
+    assert (chain.frame, chain.limit) == (1, 1)
+
+
+def test_the_frontier_names_the_range_that_closed_it():
+    time = np.arange(0.0, 1.01, 0.05)
+    C = dcm_from_euler(0.0, 90 * DEG * time, 0.0)
+    narrow = FrameLimits(-20 * DEG, 20 * DEG)
+    rig = Rig("narrow", Geometry.VERTICAL_4, (narrow, FrameLimits(-30 * DEG, 30 * DEG), narrow, narrow))
+    chain = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
+    assert not chain.found
+    assert chain.limit == 0
+    assert 20 <= 90 * time[chain.reached] <= 60
+
+
+def test_turns_of_a_bounded_frame_are_counted():
+    # Yaw alone at the level: base and middle share it; two and a half turns fit, three do not.
+    time = np.arange(0.0, 8.01, 0.05)
+    frames = (FrameLimits(0.0, 450 * DEG), FrameLimits(-DEG, DEG), FrameLimits(-10 * DEG, 10 * DEG), FrameLimits(-DEG, DEG))
+    rig = Rig("turns", Geometry.VERTICAL_4, frames)
+    counted = np.array([True, False, False, False])
+    for turn, fits in ((450.0, True), (480.0, False)):
+        C = dcm_from_euler(turn * DEG * time / 8.0, 0.0, 0.0)
+        chain = Programme(time, C, rig, lattice(rig, 2 * DEG, counted), PlanOptions()).run()
+        assert chain.found == fits
+        if fits:
+            assert chain.angles[:, 0].min() >= 0.0
+            assert chain.angles[:, 0].max() <= 450 * DEG + 1e-12

@@ -1,0 +1,67 @@
+"""Leads: from rest to the flight and back, with the flight between them, inside every limit."""
+
+import numpy as np
+import pytest
+
+from solver.attitude import dcm_from_quaternion
+from solver.planner import plan
+from solver.planner.lead import _way, lead_in, lead_out
+from solver.rig import builtin_rigs
+from solver.scenarios import random_flight
+from solver.verify import verify
+
+DEG = np.pi / 180.0
+RIG = builtin_rigs()["vertical-limited"]
+
+
+def test_the_way_to_rest_has_the_rate_and_acceleration_it_begins_with():
+    h = 1e-4
+    s = np.arange(0.0, 1.0 + h / 2, h)
+    way = _way(s, 2.0, 3.0, 1.0)
+    rate = np.diff(way) / h
+    acceleration = np.diff(rate) / h
+    assert way[0] == 0.0
+    assert rate[0] == pytest.approx(2.0, abs=1e-3)
+    assert acceleration[0] == pytest.approx(3.0, abs=1e-2)
+    assert rate[-1] == pytest.approx(0.0, abs=1e-4)
+    assert acceleration[-1] == pytest.approx(0.0, abs=1e-2)
+    assert np.abs(np.diff(acceleration)).max() < 0.02  # no jump of the acceleration anywhere
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_whole_motion_from_rest_to_rest_is_inside_the_limits(seed):
+    t, q = random_flight(seed, 3.0, 500.0, 100 * DEG)
+    made = plan(t, dcm_from_quaternion(q), RIG)
+    assert made.verdict.feasible
+    assert made.lead_note == ""
+    rest = 4
+    angles = np.concatenate(
+        [
+            np.repeat(made.lead_in[:1], rest, axis=0), made.lead_in, made.solution.angles, made.lead_out,
+            np.repeat(made.lead_out[-1:], rest, axis=0),
+        ]
+    )  # fmt: skip
+    time = np.arange(len(angles)) * 0.002
+    assert verify(time, angles, RIG).violations == ()
+    # No corner at the joints: the acceleration changes there by a part of what it may be.
+    acceleration = np.diff(angles, 2, axis=0) / 0.002**2
+    joint = rest + len(made.lead_in)
+    step = np.abs(np.diff(acceleration, axis=0))[joint - 3 : joint + 1].max(axis=0)
+    assert (step < 0.5 * RIG.max_acceleration).all()
+
+
+def test_a_flight_at_rest_needs_no_leads():
+    t = np.arange(5) * 0.002
+    still = np.tile([0.1, 0.2, 0.3, 0.4], (5, 1))
+    assert lead_in(t[:3], still[:3], RIG)[0].shape == (0, 4)
+    assert lead_out(t[-3:], still[-3:], RIG)[0].shape == (0, 4)
+
+
+def test_no_room_is_said_with_frame_and_limit():
+    t = np.arange(3) * 0.002
+    x = np.zeros((3, 4))
+    x[:, 3] = 59.99 * DEG + 300 * DEG * (t - t[-1])
+    samples, note = lead_out(t, x, RIG)
+    assert samples.shape == (0, 4)
+    assert "inner" in note
+    assert "position" in note
