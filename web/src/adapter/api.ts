@@ -13,6 +13,7 @@ import type {
   Problem,
   Rig,
   Run,
+  ScenePose,
   Trajectory,
   TrajectoryPreview,
 } from "../contract/types";
@@ -60,8 +61,8 @@ function failure(status: number, body: string): ApiError {
   return new ApiError(status, status === 0 ? "The server does not answer" : `The server answered ${status}`);
 }
 
-async function request<T>(method: string, path: string, body?: unknown): Promise<T> {
-  const init: RequestInit = { method, headers: { "x-fullpose-client": me() } };
+async function request<T>(method: string, path: string, body?: unknown, keepalive = false): Promise<T> {
+  const init: RequestInit = { method, keepalive, headers: { "x-fullpose-client": me() } };
   if (body !== undefined) {
     init.body = JSON.stringify(body);
     init.headers = { ...init.headers, "content-type": "application/json" };
@@ -113,6 +114,10 @@ export const api = {
 
   runs: () => request<Run[]>("GET", "/runs"),
   exportUrl: (run: string, format: "csv" | "parquet" | "mcap") => `${BASE}/runs/${at(run)}/export?format=${format}`,
+
+  /** Shows a plan's pose as a ghost beside the rig; null takes it away. */
+  scenePose: (rig: string, pose: { plan_id: string; time_s: number } | null) =>
+    request<ScenePose | null>("POST", `/rigs/${at(rig)}/scene/pose`, pose, pose === null), // also from a page that is being left
 
   streamUrl: (rig: string) => {
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";

@@ -341,6 +341,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/rigs/{rig}/scene/pose": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Show Pose
+         * @description Show an instant of a plan as a ghost beside the rig, to all who look; null takes it away. Needs no lease.
+         */
+        post: operations["show_pose_api_v1_rigs__rig__scene_pose_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/rigs/{rig}/session": {
         parameters: {
             query?: never;
@@ -1773,6 +1793,48 @@ export interface components {
             /** Who */
             who: string;
         };
+        /**
+         * ScenePoseIn
+         * @description An instant of a plan.
+         */
+        ScenePoseIn: {
+            /** Plan Id */
+            plan_id: string;
+            /**
+             * Time S
+             * @description Zero is the flight's first sample; negative in the lead-in
+             */
+            time_s: number;
+        };
+        /**
+         * ScenePoseOut
+         * @description What is shown: the plan's sample nearest to the time asked for.
+         */
+        ScenePoseOut: {
+            /** Angles Deg */
+            angles_deg: [
+                number,
+                number,
+                number,
+                number
+            ];
+            /** Error Deg */
+            error_deg: number | null;
+            /** Plan Id */
+            plan_id: string;
+            /**
+             * Q
+             * @description The flight's attitude (w, x, y, z); null in the leads
+             */
+            q: [
+                number,
+                number,
+                number,
+                number
+            ] | null;
+            /** Time S */
+            time_s: number;
+        };
         /** ServerLimits */
         ServerLimits: {
             /** Max Solve Samples */
@@ -3166,6 +3228,59 @@ export interface operations {
             };
             /** @description The rig process does not answer */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    show_pose_api_v1_rigs__rig__scene_pose_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                rig: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["ScenePoseIn"] | null;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScenePoseOut"] | null;
+                };
+            };
+            /** @description The plan is not done, or is another rig's */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -1,6 +1,7 @@
 /** What a plan's report comes to, in words. */
 import type { Plan } from "../contract/types";
-import { fixed, scientific } from "./format";
+import { fixed, small } from "./format";
+import { UNITS } from "./margins";
 
 export interface Outcome {
   tone: "good" | "caution" | "danger" | "active" | "";
@@ -8,8 +9,6 @@ export interface Outcome {
   /** One line: why, or how well. */
   detail: string;
 }
-
-const LIMIT_UNITS: Record<string, string> = { position: "deg", rate: "deg/s", acceleration: "deg/s²" };
 
 /** What stopped a flight, or how exact it is. */
 export function outcomeOf(plan: Plan): Outcome {
@@ -22,7 +21,7 @@ export function outcomeOf(plan: Plan): Outcome {
   if (status === "cancelled") return { tone: "", word: "Cancelled", detail: "" };
   if (status === "interrupted") return { tone: "", word: "Interrupted", detail: "The server stopped while it was solved" };
   if (!report) return { tone: "danger", word: "No report", detail: plan.refusal ?? "" };
-  const error = `largest error ${scientific(report.max_error_deg)} deg`;
+  const error = `largest error ${small(report.max_error_deg)} deg`;
   if (plan.flyable) return { tone: "good", word: "Flyable", detail: error };
   if (report.feasible) return { tone: "caution", word: "Not flyable", detail: plan.refusal ?? error };
   return { tone: "danger", word: "Not feasible", detail: blockingOf(plan) ?? plan.refusal ?? error };
@@ -39,7 +38,7 @@ export function blockingOf(plan: Plan): string | null {
   }
   if (violation) {
     const { frame, limit, time_s, value } = violation;
-    return `${frame} ${limit} reaches ${fixed(value, 1)} ${LIMIT_UNITS[limit] ?? ""} at ${fixed(time_s, 3)} s`;
+    return `${frame} ${limit} reaches ${fixed(value, 1)} ${UNITS[limit]} at ${fixed(time_s, 3)} s`;
   }
   return null;
 }

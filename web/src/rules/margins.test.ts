@@ -1,0 +1,50 @@
+import { describe, expect, it } from "vitest";
+import type { Plan } from "../contract/types";
+import { blockSentence, marginOf } from "./margins";
+
+const LIMITS = { min_deg: -60, max_deg: 60, max_rate_deg_s: 100, max_acceleration_deg_s2: null, home_deg: 0 };
+const FREE = { ...LIMITS, min_deg: null, max_deg: null };
+
+function plan(position: number | null, report: object = {}): Plan {
+  const margin = (value: number | null): object | null => (value === null ? null : { value, time_s: 1.5 });
+  const inner = { position_deg: margin(position), rate_deg_s: margin(40), acceleration_deg_s2: null };
+  return { method: "exact", margins: { inner }, report: { blocking: null, limit_violations: [], ...report } } as unknown as Plan;
+}
+
+describe("a margin", () => {
+  it("is coloured by its share of the limit", () => {
+    expect(marginOf(plan(20), "inner", "position", LIMITS)).toMatchObject({ tone: "", text: "20.0", timeS: 1.5 });
+    expect(marginOf(plan(2.9), "inner", "position", LIMITS)).toMatchObject({ tone: "caution", text: "2.90" });
+    expect(marginOf(plan(-0.5), "inner", "position", LIMITS)).toMatchObject({ tone: "danger", text: "0.50 beyond" });
+    expect(marginOf(plan(0.0006), "inner", "position", LIMITS)?.text).toBe("6.0e−4");
+  });
+
+  it("within the tolerance is at the limit, not beyond", () => {
+    expect(marginOf(plan(-4e-6), "inner", "position", LIMITS)).toMatchObject({ tone: "caution", text: "at the limit" });
+  });
+
+  it("is none where there is no limit", () => {
+    expect(marginOf(plan(null), "inner", "position", FREE)).toBeNull();
+    expect(marginOf(plan(1), "inner", "acceleration", LIMITS)).toBeNull();
+    expect(marginOf(plan(1), "base", "rate", LIMITS)).toBeNull();
+  });
+});
+
+describe("what closes the way, as a sentence", () => {
+  it("names frame, limit and time", () => {
+    const blocked = plan(0, { blocking: { frame: "inner", limit: "position", time_s: 0.28 } });
+    expect(blockSentence(blocked, LIMITS)).toBe(
+      "At 0.280 s the inner frame meets its position limit of ±60 deg, and exact finds no way past it.",
+    );
+    const skew = { ...LIMITS, min_deg: -10 };
+    expect(blockSentence(blocked, skew)).toContain("limit of −10 … 60 deg");
+    expect(blockSentence(plan(1), LIMITS)).toBeNull();
+  });
+
+  it("tells how far a violation goes", () => {
+    const violation = { frame: "inner", limit: "rate", time_s: 2, value: 812.34, samples: 1 };
+    expect(blockSentence(plan(0, { limit_violations: [violation] }), LIMITS)).toBe(
+      "At 2.000 s the inner frame reaches 812.3 deg/s, beyond its rate limit of ±100 deg/s.",
+    );
+  });
+});
