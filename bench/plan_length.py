@@ -2,7 +2,7 @@
 
     python -m bench.plan_length [seconds ...]
 
-Memory is the process's largest resident size less what it had when the flight's own arrays (and the results') were there.
+Memory is the process's largest resident size less what it had with the flight's arrays, and less the results'.
 """
 
 import resource
@@ -36,7 +36,7 @@ def main(lengths: list[float]) -> None:
         del q
         before, peak, done = resident(), 0.0, threading.Event()
 
-        def watch() -> None:
+        def watch(done: threading.Event = done) -> None:
             nonlocal peak
             while not done.wait(0.05):
                 peak = max(peak, resident())
@@ -49,7 +49,9 @@ def main(lengths: list[float]) -> None:
         done.set()
         watcher.join()
         s = result.solution
-        arrays = sum(a.nbytes for a in (s.angles, s.error, s.matrix_error, s.limited, s.iterations, s.step_time)) / 2**20
+        arrays = (
+            sum(a.nbytes for a in (s.angles, s.error, s.matrix_error, s.limited, s.iterations, s.step_time)) / 2**20
+        )
         print(
             f"{seconds:7.0f} s  {len(t):8d} samples  planned in {elapsed:7.2f} s ({cpu:7.2f} s of processor)  "
             f"feasible {result.verdict.feasible}  matrix error {s.matrix_error.max():.1e}  "

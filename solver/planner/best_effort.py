@@ -76,7 +76,9 @@ def least_error(
                 )  # fmt: skip
             if freed[begin, end][2] > MET:
                 if (begin == 0 and end == n) or stretch.padding >= LARGEST_PADDING:
-                    return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start), rig, options, start)
+                    return from_feasible(
+                        time, attitude, feasible(time, attitude, angles, rig, start), rig, options, start
+                    )
                 stretch = _Stretch(stretch.begin, stretch.end, 2.0 * stretch.padding)
             grown.append(stretch)
         merged = _merged(grown, time)
@@ -122,7 +124,7 @@ def from_feasible(
 
 @kernel
 def follow(table: Array, time: Array, target: Array, x: Array) -> None:
-    """x (n, 4) <- a path inside the limits (`limit_table`) after target (n, 4) [rad]: each frame as fast as it can brake."""
+    """x (n, 4) <- a path inside the limits (`limit_table`) after target (n, 4) [rad], as fast as it can brake."""
     n = time.shape[0]
     v = np.zeros(4)
     lo, hi = np.empty(4), np.empty(4)
@@ -173,7 +175,8 @@ def _merged(stretches: list[_Stretch], time: Array) -> list[_Stretch]:
 
 
 def _free(
-    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, pinned: tuple[bool, bool], start: Array | None
+    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, pinned: tuple[bool, bool],
+    start: Array | None,
 ) -> tuple[Array, NDArray[np.int16], float]:  # fmt: skip
     """(angles (n, 4), limited (n,), overrun) of one stretch with all frames free; its seams count."""
     n = len(time)
@@ -189,12 +192,21 @@ def _free(
     trust = TRUST
     best: tuple[float, Array, Answer, NDArray[np.int64]] | None = None
     for iteration in range(ITERATIONS):
-        problem, tag, _ = _programme(time, attitude, x, rig, limits, options, basis, stride, flags, trust, pinned, start)
+        problem, tag, _ = _programme(
+            time, attitude, x, rig, limits, options, basis, stride, flags, trust, pinned, start
+        )
         answer = solve_programme(problem)
         moved = np.empty_like(x)
         for i in range(4):
             column = np.empty((n, 4))
-            displaced(x, np.tile(ones[i], (n, 1)), basis.first, basis.values, np.ascontiguousarray(answer.coefficients[i::4]), column)
+            displaced(
+                x,
+                np.tile(ones[i], (n, 1)),
+                basis.first,
+                basis.values,
+                np.ascontiguousarray(answer.coefficients[i::4]),
+                column,
+            )
             moved[:, i] = column[:, i]
         over_limits(time, moved, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
         flags |= (over > 1e-6).astype(np.uint8)
@@ -245,8 +257,8 @@ def _codes(n: int, answer: Answer, tag: NDArray[np.int64]) -> NDArray[np.int16]:
 
 
 def _programme(
-    time: Array, attitude: Array, x: Array, rig: Rig, limits: Limits, options: PlanOptions, basis: Basis, stride: int, flags: Flags,
-    trust: float, pinned: tuple[bool, bool], start: Array | None,
+    time: Array, attitude: Array, x: Array, rig: Rig, limits: Limits, options: PlanOptions, basis: Basis, stride: int,
+    flags: Flags, trust: float, pinned: tuple[bool, bool], start: Array | None,
 ) -> tuple[QuadraticProgramme, NDArray[np.int64], float]:  # fmt: skip
     size = 4 * basis.size
     bands, gradient = np.zeros((size, 4 * ROW)), np.zeros(size)
@@ -274,7 +286,17 @@ def _programme(
             equalities.append(Equality(int(basis.first[0]), row, float(start[i] - x[0, i]), i))
     tag = tag[:count]
     problem = QuadraticProgramme(
-        bands, gradient, origin[:count], rows[:count], bound[:count], tag % 12 // 3, origin[:count], trust, pinned,
-        tuple(equalities), 4, SLACK_COST,
+        bands,
+        gradient,
+        origin[:count],
+        rows[:count],
+        bound[:count],
+        tag % 12 // 3,
+        origin[:count],
+        trust,
+        pinned,
+        tuple(equalities),
+        4,
+        SLACK_COST,
     )
     return problem, tag, error

@@ -91,7 +91,7 @@ def closest_all(axes: NDArray[np.int64], horizontal: bool, attitude: Array, d: A
 
 @kernel
 def hold_locked(horizontal: bool, axes: NDArray[np.int64], attitude: Array, low: Array, high: Array, d: Array) -> None:
-    """Slide every row of d (n, 4) along the solutions to where its locked frame is in the middle of its range, in place.
+    """Slide every row of d (n, 4) along the solutions until its locked frame is in the middle of its range, in place.
 
     low, high (4,) [rad]. Of several locked frames the one that the self-motion moves most; where none is moved by it,
     nothing is done.
@@ -102,9 +102,9 @@ def hold_locked(horizontal: bool, axes: NDArray[np.int64], attitude: Array, low:
             null_vectors(horizontal, d[k : k + 1], null)
             frame = -1
             for i in range(4):
-                if high[i] - low[i] < LOCKED and axes[i] >= 0 and abs(null[0, i]) > 1e-3:
-                    if frame < 0 or abs(null[0, i]) > abs(null[0, frame]):
-                        frame = i
+                most = abs(null[0, frame]) if frame >= 0 else 1e-3
+                if high[i] - low[i] < LOCKED and axes[i] >= 0 and abs(null[0, i]) > most:
+                    frame = i
             if frame < 0:
                 break
             gap = 0.5 * (low[frame] + high[frame]) - d[k, frame]
@@ -118,7 +118,7 @@ def hold_locked(horizontal: bool, axes: NDArray[np.int64], attitude: Array, low:
 
 @kernel
 def polish(horizontal: bool, attitude: Array, d: Array) -> None:
-    """The last digits: every row through the chart that is farther from its fold, unless that fold is upon it. In place."""
+    """The last digits, in place: every row through the chart that is farther from its fold, unless that is upon it."""
     exact = np.empty(4)
     for k in range(d.shape[0]):
         project(horizontal, attitude[k], d[k], exact)

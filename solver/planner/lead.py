@@ -57,9 +57,7 @@ def lead_out(time: Array, angles: Array, rig: Rig) -> tuple[Array, str]:
     return samples, ""
 
 
-def _frame_way(
-    t: Array, x: Array, rate: float, bend: float, h: float, rig: Rig, frame: int
-) -> tuple[Array, int]:
+def _frame_way(t: Array, x: Array, rate: float, bend: float, h: float, rig: Rig, frame: int) -> tuple[Array, int]:
     """(angles (m,) [rad] of one frame on its way to rest, -) or (empty, the limit that closes the way)."""
     shortest = max(4.0 * h, 1.1 * abs(rate) / min(float(rig.max_acceleration[frame]), 1e6))
     for T in (max(shortest, GENTLE), shortest):  # hurried only where there is no room for better

@@ -22,7 +22,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Path:
-    """A path for the whole flight: angles (n, 4) [rad], the windows that did not come inside the limits, iterations (n,)."""
+    """A path for the whole flight: angles (n, 4) [rad], the windows that stayed outside the limits, iterations (n,)."""
 
     angles: Array
     failures: tuple[Refined, ...]  # `sample` counted from the flight's beginning
@@ -39,9 +39,7 @@ def stage_samples(time: Array, stage: float) -> Ints:
     return np.unique(np.r_[0, np.clip(at, 0, n - 1), n - 1])
 
 
-def smooth_curve(
-    time: Array, attitude: Array, rig: Rig, samples: Ints, chain: Chain, start: Array | None
-) -> Array:
+def smooth_curve(time: Array, attitude: Array, rig: Rig, samples: Ints, chain: Chain, start: Array | None) -> Array:
     """The exact path (n, 4) [rad] next to the smoothed chain, whose stages are at `samples`."""
     knots = time[samples]
     points = chain.angles.copy()
@@ -90,8 +88,10 @@ def refine_path(
     failures: list[Refined] = []
     begin = 0
     while True:
-        end = n if time[-1] - time[begin] <= 1.5 * options.window else int(
-            np.searchsorted(time, time[begin] + options.window)
+        end = (
+            n
+            if time[-1] - time[begin] <= 1.5 * options.window
+            else int(np.searchsorted(time, time[begin] + options.window))
         )
         following = n if end == n else int(np.searchsorted(time, time[end - 1] - options.overlap))
         result = _window(time, attitude, d, rig, options, begin, end, following, start, start_rate)

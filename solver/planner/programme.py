@@ -5,6 +5,7 @@ limits can be met at all, so that an infeasible programme still says where it fa
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import piqp
@@ -17,6 +18,7 @@ from solver.planner.rows import ROW
 Array = NDArray[np.float64]
 SLACK_COST = 100.0  # per whole limit and bin; the rest of the cost is of the order of one a second
 TOLERANCE = 1e-7
+Matrix = Any  # a SciPy sparse matrix, compressed columns
 
 
 @dataclass(frozen=True)
@@ -61,37 +63,50 @@ class Answer:
     iterations: int
 
 
-def matrices(
-    problem: QuadraticProgramme,
-) -> tuple[sparse.csc_matrix, Array, sparse.csc_matrix, Array, sparse.csc_matrix | None, Array | None, Array, Array]:
-    """(P, q, G, h, A, b, lower, upper) of min 1/2 x'Px + q'x, Gx <= h, Ax = b, lower <= x <= upper; x = (c, slack)."""
+@dataclass(frozen=True)
+class Matrices:
+    """min 1/2 x'Px + q'x, Gx <= h, Ax = b, lower <= x <= upper; x = (c without its pinned ends, slack)."""
+
+    P: Matrix
+    q: Array
+    G: Matrix
+    h: Array
+    A: Matrix | None
+    b: Array | None
+    lower: Array
+    upper: Array
+
+
+def matrices(problem: QuadraticProgramme) -> Matrices:
+    """The programme as the solvers take it."""
     m, width = problem.bands.shape
     every = problem.every
     r = len(problem.origin)
     bins, bin_of_row = np.unique(problem.group, return_inverse=True) if r else (np.empty(0, int), np.empty(0, int))
     s = len(bins)
     diagonals = [problem.bands[: m - b, b] for b in range(min(width, m))]
-    upper_part = sparse.diags(diagonals, list(range(len(diagonals))), shape=(m, m))
+    upper_part: Matrix = sparse.diags(diagonals, list(range(len(diagonals))), shape=(m, m))
     hessian = upper_part + sparse.triu(upper_part, 1).T
-    P = sparse.block_diag([hessian, sparse.identity(s) * 1e-3], format="csc")
+    P: Matrix = sparse.block_diag([hessian, sparse.identity(s) * 1e-3], format="csc")
     q = np.concatenate([problem.gradient, np.full(s, problem.slack_cost)])
     column = (problem.origin[:, None] + np.arange(ROW)) * every + (problem.frame[:, None] if every > 1 else 0)
     kept = problem.rows != 0.0
     row_number = np.repeat(np.arange(r), kept.sum(axis=1))
-    G = sparse.csc_matrix(
+    G: Matrix = sparse.csc_matrix(
         (
             np.concatenate([problem.rows[kept], np.full(r, -1.0)]),
             (np.concatenate([row_number, np.arange(r)]), np.concatenate([column[kept], m + bin_of_row])),
         ),
         shape=(r, m + s),
     )
-    A = b = None
+    A: Matrix | None = None
+    b: Array | None = None
     if problem.equalities:
-        A = sparse.lil_matrix((len(problem.equalities), m + s))
+        dense = np.zeros((len(problem.equalities), m + s))
         for k, equality in enumerate(problem.equalities):
             for a in np.flatnonzero(equality.row):
-                A[k, (equality.origin + a) * every + (equality.frame if every > 1 else 0)] = equality.row[a]
-        A = A.tocsc()
+                dense[k, (equality.origin + a) * every + (equality.frame if every > 1 else 0)] = equality.row[a]
+        A = sparse.csc_matrix(dense)
         b = np.array([equality.value for equality in problem.equalities])
     lower = np.concatenate([np.full(m, -problem.trust), np.zeros(s)])
     upper = np.concatenate([np.full(m, problem.trust), np.full(s, np.inf)])
@@ -104,18 +119,18 @@ def matrices(
         P, G = P[keep][:, keep], G[:, keep]
         A = A[:, keep] if A is not None else None
         q, lower, upper = q[keep], lower[keep], upper[keep]
-    return P.tocsc(), q, G.tocsc(), problem.bound, A, b, lower, upper
+    return Matrices(P.tocsc(), q, G.tocsc(), problem.bound, A, b, lower, upper)
 
 
 def solve_programme(problem: QuadraticProgramme) -> Answer:
     """The minimiser, by PIQP's interior-point method."""
     m = len(problem.gradient)
-    P, q, G, h, A, b, lower, upper = matrices(problem)
+    given = matrices(problem)
     solver = piqp.SparseSolver()
     solver.settings.eps_abs = TOLERANCE
     solver.settings.eps_rel = TOLERANCE
     solver.settings.max_iter = 100
-    solver.setup(P, q, A, b, G, None, h, lower, upper)
+    solver.setup(given.P, given.q, given.A, given.b, given.G, None, given.h, given.lower, given.upper)
     status = solver.solve()
     x = np.asarray(solver.result.x)
     fixed = PINNED * problem.every

@@ -88,7 +88,8 @@ def refine(
     """One window: time (n,), attitude (n, 3, 3), angles (n, 4) exact poses to begin with.
 
     `pinned` ends keep value, slope and bend; `start` keeps the first pose, `start_rate` (4,) [rad/s] the rate of the
-    first interval. A rig with a locked frame leaves nothing to refine. `ends` are where a lead from or to rest must find room. Only the first `judged` samples count for the verdict of the window.
+    first interval. A rig with a locked frame leaves nothing to refine. `ends` are where a lead from or to rest needs
+    room. Only the first `judged` samples count for the verdict of the window.
     """
     n = len(time)
     limits = rig_limits(rig, options.reserve)
@@ -108,7 +109,9 @@ def refine(
     best_cost = path_cost(time, d, rig, options, stride) + OVERRUN * max(0.0, best.over)
     count = 0
     for count in range(1, (iterations or options.iterations) + 1):
-        problem = _programme(time, d, rig, limits, options, basis, stride, flags, trust, pinned, start, start_rate, ends)
+        problem = _programme(
+            time, d, rig, limits, options, basis, stride, flags, trust, pinned, start, start_rate, ends
+        )
         answer = solve_programme(problem[0])
         moved = np.empty_like(d)
         displaced(d, problem[1], basis.first, basis.values, answer.coefficients, moved)
@@ -137,8 +140,8 @@ def refine(
 
 
 def _programme(
-    time: Array, d: Array, rig: Rig, limits: Limits, options: PlanOptions, basis: Basis, stride: int, flags: Flags, trust: float,
-    pinned: tuple[bool, bool], start: bool, start_rate: Array | None, ends: tuple[bool, bool],
+    time: Array, d: Array, rig: Rig, limits: Limits, options: PlanOptions, basis: Basis, stride: int, flags: Flags,
+    trust: float, pinned: tuple[bool, bool], start: bool, start_rate: Array | None, ends: tuple[bool, bool],
 ) -> tuple[QuadraticProgramme, Array]:  # fmt: skip
     n = np.empty_like(d)
     null_vectors(rig.geometry.horizontal, d, n)
@@ -146,7 +149,8 @@ def _programme(
     bands = np.zeros((basis.size, ROW))
     gradient = np.zeros(basis.size)
     cost_bands(
-        time, d, n, basis.first, basis.values, stride, rate_weight, acceleration_weight, rig.home, _home_cost(rig, options),
+        time, d, n, basis.first, basis.values, stride, rate_weight, acceleration_weight, rig.home,
+        _home_cost(rig, options),
         options.singularity_margin, options.singularity_cost, bands, gradient,
     )  # fmt: skip
     room = 256
@@ -184,15 +188,21 @@ def _programme(
         group = np.r_[group, np.full(len(cuts), basis.size)]
         count += len(cuts)
     problem = QuadraticProgramme(
-        bands, gradient, origin[:count], rows[:count], bound[:count], np.zeros(count, np.int64), group, trust, pinned,
+        bands,
+        gradient,
+        origin[:count],
+        rows[:count],
+        bound[:count],
+        np.zeros(count, np.int64),
+        group,
+        trust,
+        pinned,
         tuple(equalities),
     )
     return problem, n
 
 
-def lead_cuts(
-    time: Array, d: Array, n: Array, basis: Basis, limits: Limits, ends: tuple[bool, bool]
-) -> list[Equality]:
+def lead_cuts(time: Array, d: Array, n: Array, basis: Basis, limits: Limits, ends: tuple[bool, bool]) -> list[Equality]:
     """Rows c <= value that leave room for the leads: ROOM v^2 / a between rest and rate v, by its tangents, and a few
     samples' way."""
     cuts: list[Equality] = []
@@ -204,7 +214,7 @@ def lead_cuts(
         origin = int(basis.first[first])
         shift = int(basis.first[k]) - origin
         h = time[first + 1] - time[first]
-        for i in np.flatnonzero(np.isfinite(limits.high) & np.isfinite(limits.acceleration)):
+        for i in np.flatnonzero(np.isfinite(limits.high) & np.isfinite(limits.acceleration)).tolist():
             rate_row = np.zeros(ROW)
             fill_row(1, first + 1, i, time, n, basis.first, basis.values, rate_row)
             here = np.zeros(ROW)

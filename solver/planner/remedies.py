@@ -1,8 +1,8 @@
 """What would make a flight fit: flying it slower, turning it by a constant, or raising one limit.
 
-Each remedy is a search over plans and returns the one it ends with, ready to fly. The trials skip the least-error path of
-an infeasible flight and, where the samples are dense, look at every few of them; what is returned is planned anew from
-all of them. `progress(done, total)` counts trials and may raise `CancelledError`.
+Each remedy is a search over plans and returns the one it ends with, ready to fly. The trials skip the least-error path
+of an infeasible flight and, where the samples are dense, look at every few of them; what is returned is planned anew
+from all of them. `progress(done, total)` counts trials and may raise `CancelledError`.
 """
 
 import math
@@ -123,7 +123,7 @@ def _slowed(trials: _Trials, t: Array, C: Array, rig: Rig, factor: float) -> Rem
 
 
 def turned(attitude: Array, kind: str, axis: str, angle: float) -> Array:
-    """The flight turned by a constant: "heading": C R, about the reference's up axis; "mounting": R C, about a body axis."""
+    """The flight turned by a constant: "heading": C R, about the reference's up axis; "mounting": R C, a body axis."""
     if kind == "heading":
         return np.asarray(attitude @ _elementary(1, angle))
     return np.asarray(_elementary(AXES.index(axis), angle) @ attitude)
@@ -143,8 +143,8 @@ def offset(
 ) -> Remedy:  # fmt: skip
     """The constant offset that makes the flight feasible with the most margin, of those tried.
 
-    kind: "heading" (the flight turned about the vertical) or "mounting" (the payload turned about one body axis). Offsets
-    every `step` [rad] are tried, then half and a quarter of it around the best. Infeasible where none fits.
+    kind: "heading" (the flight turned about the vertical) or "mounting" (the payload turned about one body axis).
+    Offsets every `step` [rad] are tried, then half and a quarter of it around the best. Infeasible where none fits.
     Raises `InputError` for another kind, `CancelledError` from progress.
     """
     if kind not in ("heading", "mounting"):
@@ -170,7 +170,9 @@ def offset(
             best = max(best, (room(axis, other), axis, other))
     _, axis, angle = best
     attitude_there = turned(C, kind, axis, angle)
-    return Remedy(kind, axis, math.remainder(angle, 2.0 * math.pi), t, attitude_there, rig, trials.final(t, attitude_there, rig))
+    return Remedy(
+        kind, axis, math.remainder(angle, 2.0 * math.pi), t, attitude_there, rig, trials.final(t, attitude_there, rig)
+    )
 
 
 def smallest_share(margins: Margins, rig: Rig) -> float:
@@ -195,7 +197,8 @@ def relax(
 
     frame, limit: of `FRAMES` and `LIMITS`, to look at one alone; None: all. Rates and accelerations are raised up to
     `largest` times, ranges widened on both sides up to a turn in all, to within 1 %. The list is empty where no single
-    limit is enough, or nothing need be raised. Raises `CancelledError` from progress, `InputError` for names that are none.
+    limit is enough, or nothing need be raised. Raises `CancelledError` from progress, `InputError`
+    for names that are none.
     """
     if frame is not None and frame not in FRAMES:
         raise InputError("frame", None, frame, f"one of {', '.join(FRAMES)}")
@@ -255,4 +258,8 @@ def raised(rig: Rig, frame: int, kind: int, share: float, largest: float) -> Rig
         limits = replace(limits, max_acceleration=limits.max_acceleration * factor)
     frames = list(rig.frames)
     frames[frame] = limits
-    return replace(rig, name=f"{rig.name}, {FRAMES[frame]} {LIMITS[kind]} raised", frames=(frames[0], frames[1], frames[2], frames[3]))
+    return replace(
+        rig,
+        name=f"{rig.name}, {FRAMES[frame]} {LIMITS[kind]} raised",
+        frames=(frames[0], frames[1], frames[2], frames[3]),
+    )

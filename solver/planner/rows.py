@@ -1,7 +1,8 @@
 """Kernels of the refinement: limits of a sampled path, and the rows of its quadratic programme.
 
 The path is x_k = d_k + n_k z_k with z in a `Basis`. Rates and accelerations are the differences at the sample rate that
-the verdict takes: v_k = (x_k - x_{k-1}) / h_k, a_k = (v_{k+1} - v_k) / ((h_k + h_{k+1}) / 2); rows are divided by the limit.
+the verdict takes: v_k = (x_k - x_{k-1}) / h_k, a_k = (v_{k+1} - v_k) / ((h_k + h_{k+1}) / 2). Rows are divided by the
+limit.
 """
 
 import math
@@ -25,16 +26,16 @@ POSITION_UNIT = 0.02  # [rad] counts as much as the whole of a rate limit
 def difference(kind: int, k: int, i: int, time: Array, d: Array) -> float:
     """Position, rate or acceleration of frame i at sample k; time (n,) [s], d (n, 4) [rad]. Ends: nan."""
     if kind == 0:
-        return d[k, i]
+        return float(d[k, i])
     if k < 1:
         return np.nan
     past = (d[k, i] - d[k - 1, i]) / (time[k] - time[k - 1])
     if kind == 1:
-        return past
+        return float(past)
     if k > time.shape[0] - 2:
         return np.nan
     ahead = (d[k + 1, i] - d[k, i]) / (time[k + 1] - time[k])
-    return (ahead - past) / (0.5 * (time[k + 1] - time[k - 1]))
+    return float((ahead - past) / (0.5 * (time[k + 1] - time[k - 1])))
 
 
 @kernel
@@ -48,7 +49,7 @@ def over_limits(
     over: Array,
     frame: NDArray[np.int8],
 ) -> None:
-    """over (n, 3) <- by how much of a limit each sample is outside (position, rate, acceleration), <= 0 inside; and whose.
+    """over (n, 3) <- how far outside a limit each sample is (position, rate, acceleration), <= 0 inside; and whose.
 
     Rates and accelerations as shares of the limit, positions in `POSITION_UNIT`. frame (n, 3).
     """
@@ -98,8 +99,8 @@ def fill_row(kind: int, k: int, i: int, time: Array, n: Array, first: Ints, valu
     row[:] = 0.0
     if kind == 0:
         _add(row, first[k], k, n[k, i], first, values)
-        return first[k]
-    origin = first[k - 1]
+        return int(first[k])
+    origin = int(first[k - 1])
     h0 = time[k] - time[k - 1]
     if kind == 1:
         _add(row, origin, k, n[k, i] / h0, first, values)
@@ -115,7 +116,8 @@ def fill_row(kind: int, k: int, i: int, time: Array, n: Array, first: Ints, valu
 
 @kernel
 def cost_bands(
-    time: Array, d: Array, n: Array, first: Ints, values: Array, stride: int, rate_weight: Array, acceleration_weight: Array,
+    time: Array, d: Array, n: Array, first: Ints, values: Array, stride: int, rate_weight: Array,
+    acceleration_weight: Array,
     home: Array, home_cost: float, margin: float, rise: float, H: Array, g: Array,
 ) -> None:  # fmt: skip
     """H, g <- the quadratic model of the cost: 1/2 c'Hc + g'c. H (size, ROW) upper bands: H[j, b] of (j, j + b)."""
@@ -165,13 +167,15 @@ def cost_bands(
 
 @kernel
 def limit_rows(
-    time: Array, d: Array, n: Array, first: Ints, values: Array, stride: int, flags: Flags, trust: float, low: Array, high: Array,
+    time: Array, d: Array, n: Array, first: Ints, values: Array, stride: int, flags: Flags, trust: float,
+    low: Array, high: Array,
     rate: Array, acceleration: Array, near: float, origin: Ints, rows: Array, bound: Array, tag: Ints,
 ) -> int:  # fmt: skip
     """The rows that may matter: row c <= bound. Returns how many; fills as many as the outputs hold.
 
     A row is taken at every `stride`-th sample where its value is above `near` of the limit (positions: where `trust`
-    along the self-motion can reach the limit), and at every sample that `flags` (n, 3) marks. origin (r,), rows (r, ROW),
+    along the self-motion can reach the limit), and at every sample that `flags` (n, 3) marks.
+    origin (r,), rows (r, ROW),
     bound (r,), tag (r,) = 12 sample + 3 frame + kind.
     """
     count = 0

@@ -64,7 +64,7 @@ def euler_chain(
 
 
 def three_axis_path(time: Array, attitude: Array, rig: Rig, start: Array | None) -> Array:
-    """The angles (n, 4) [rad] of a three-axis rig, base at zero, shifted by whole turns into the ranges where they fit."""
+    """The angles (n, 4) [rad] of a three-axis rig, base at zero, shifted by whole turns into the ranges if they fit."""
     columns = list(rig.geometry.frames)
     begin = np.ascontiguousarray((rig.home if start is None else start)[columns])
     weight = (rig.weight / reference_rates(rig) ** 2)[columns]
@@ -81,5 +81,7 @@ def three_axis_path(time: Array, attitude: Array, rig: Rig, start: Array | None)
 def turns_into_range(angles: Array, low: Array, high: Array) -> Array:
     """Whole turns [rad] a column of (n, m) that bring it inside low..high (m,), as near the middle as turns allow."""
     middle = 0.5 * (angles.min(axis=0) + angles.max(axis=0))
-    target = np.where(np.isfinite(high), 0.5 * (np.where(np.isfinite(low), low, 0) + np.where(np.isfinite(high), high, 0)), middle)
+    target = np.where(
+        np.isfinite(high), 0.5 * (np.where(np.isfinite(low), low, 0) + np.where(np.isfinite(high), high, 0)), middle
+    )
     return np.asarray(TURN * np.rint((target - middle) / TURN))

@@ -52,8 +52,8 @@ class _Search:
     """One flight's search for a path; keeps what the attempts share."""
 
     def __init__(
-        self, time: Array, attitude: Array, rig: Rig, start: Array | None, start_rate: Array | None, options: PlanOptions,
-        progress: Progress | None,
+        self, time: Array, attitude: Array, rig: Rig, start: Array | None, start_rate: Array | None,
+        options: PlanOptions, progress: Progress | None,
     ) -> None:  # fmt: skip
         self.time, self.attitude, self.rig, self.options, self.progress = time, attitude, rig, options, progress
         self.start, self.start_rate = start, start_rate
@@ -258,10 +258,10 @@ STATEMENTS = {
     "position": "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
     "no chain of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
     "Grid-complete away from the singularity, not a theorem.",
-    "rate": "Infeasible: no chain of nodes obeys the rate limits past the blocking time, even with every edge widened by the "
-    "grid's covering step. Grid-complete away from the singularity, not a theorem.",
-    "acceleration": "Infeasible as far as the search went: chains inside the rate limits exist, but none that was refined came "
-    "inside every limit; the blocking place is the worst of the best one. Evidence, not a proof.",
+    "rate": "Infeasible: no chain of nodes obeys the rate limits past the blocking time, even with every edge widened "
+    "by the grid's covering step. Grid-complete away from the singularity, not a theorem.",
+    "acceleration": "Infeasible as far as the search went: chains inside the rate limits exist, but none of those "
+    "refined came inside every limit; the blocking place is the worst of the best one. Evidence, not a proof.",
     "three-axis": "Infeasible: a three-axis rig has no freedom but the choice of the Euler set and its turns.",
 }
 

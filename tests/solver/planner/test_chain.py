@@ -97,7 +97,12 @@ def test_the_frontier_names_the_range_that_closed_it():
 def test_turns_of_a_bounded_frame_are_counted():
     # Yaw alone at the level: base and middle share it; two and a half turns fit, three do not.
     time = np.arange(0.0, 8.01, 0.05)
-    frames = (FrameLimits(0.0, 450 * DEG), FrameLimits(-DEG, DEG), FrameLimits(-10 * DEG, 10 * DEG), FrameLimits(-DEG, DEG))
+    frames = (
+        FrameLimits(0.0, 450 * DEG),
+        FrameLimits(-DEG, DEG),
+        FrameLimits(-10 * DEG, 10 * DEG),
+        FrameLimits(-DEG, DEG),
+    )
     rig = Rig("turns", Geometry.VERTICAL_4, frames)
     counted = np.array([True, False, False, False])
     for turn, fits in ((450.0, True), (480.0, False)):

@@ -83,7 +83,7 @@ def test_cost_bands_are_the_gradient_of_the_cost(flight):
         dt = np.full(len(t), 0.004)
         dt[0] = 0.004
         dt[-1] = 1.0  # a sample has the time up to the next; the last has none, and counts for a second
-        return (0.3 * (moved**2 * dt[:, None]).sum() + (v**2 * dt[1:, None]).sum() + 0.01 * (a**2 * dt[1:-1, None]).sum())
+        return 0.3 * (moved**2 * dt[:, None]).sum() + (v**2 * dt[1:, None]).sum() + 0.01 * (a**2 * dt[1:-1, None]).sum()
 
     zero = np.zeros(basis.size)
     for at in range(5, basis.size - 8, 17):
@@ -131,11 +131,13 @@ def test_programme_agrees_with_scipy():
     answer = solve_programme(problem)
     assert answer.solved
     assert (answer.coefficients[:3] == 0.0).all()
-    P, q, G, h, _, _, lower, upper = matrices(problem)
+    given = matrices(problem)
+    P, q, G, h = given.P, given.q, given.G, given.h
     expected = minimize(
         lambda x: 0.5 * x @ (P @ x) + q @ x, np.zeros(len(q)), jac=lambda x: P @ x + q, method="SLSQP",
-        bounds=[(a, b if np.isfinite(b) else None) for a, b in zip(lower, upper, strict=True)],
-        constraints={"type": "ineq", "fun": lambda x: h - G @ x, "jac": lambda x: -G.toarray()}, options={"ftol": 1e-12},
+        bounds=[(a, b if np.isfinite(b) else None) for a, b in zip(given.lower, given.upper, strict=True)],
+        constraints={"type": "ineq", "fun": lambda x: h - G @ x, "jac": lambda _: -G.toarray()},
+        options={"ftol": 1e-12},
     )  # fmt: skip
     x = np.r_[answer.coefficients[3:], answer.slack]
     assert 0.5 * x @ (P @ x) + q @ x == pytest.approx(expected.fun, abs=1e-5)
