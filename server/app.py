@@ -17,7 +17,20 @@ from server.api.console import console
 from server.api.hosts import RigHosts
 from server.api.origin import OriginGuard
 from server.api.problems import ApiError, problem_response
-from server.api.routes import audit, compare, health, plans, rigs, runs, scene, sessions, solve, stream, trajectories
+from server.api.routes import (
+    audit,
+    compare,
+    health,
+    plans,
+    replay,
+    rigs,
+    runs,
+    scene,
+    sessions,
+    solve,
+    stream,
+    trajectories,
+)
 from server.api.run_files import RunFiles
 from server.api.services import Services
 from server.plan_folder import rig_hash
@@ -69,7 +82,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.scenes = SceneServer()
     problems.install(app)
     app.add_exception_handler(SceneError, _scene_problem)
-    for module in (rigs, trajectories, plans, compare, sessions, scene, stream, solve, runs, audit, health):
+    for module in (rigs, trajectories, plans, compare, sessions, scene, stream, replay, solve, runs, audit, health):
         app.include_router(module.router, prefix=API)
     app.include_router(scene_router, dependencies=[Depends(_scene)])
     app.mount("/", console())

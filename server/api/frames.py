@@ -3,11 +3,11 @@
 import struct
 import time
 from collections.abc import Iterator
+from typing import Protocol
 
 import msgspec
 
 from server.api.wire_stream import Record, RecordField, Subscribe
-from server.runtime.host import RigHost
 from server.runtime.telemetry import SAMPLE, Samples, dtype_description
 
 HEADER = struct.Struct("<4sHHQdQ")
@@ -23,14 +23,29 @@ def record() -> Record:
     return Record(size=SAMPLE.itemsize, fields=[RecordField(**field) for field in dtype_description()])
 
 
-class FrameMaker:
-    """What to send next: the newest sample, or all since the last frame. Keeps one position in the ring."""
+class SampleSource(Protocol):
+    """A rig's ring, or a record that stands in for one."""
 
-    def __init__(self, host: RigHost, wanted: Subscribe) -> None:
-        self._host = host
+    def latest(self) -> Samples | None:
+        """The newest sample (1,)."""
+
+    def samples(self, since_seq: int, limit: int) -> tuple[Samples, int]:
+        """Samples after `since_seq`, oldest first, at most `limit`, and how many were lost to the reader."""
+
+
+class FrameMaker:
+    """What to send next: the newest sample, or all since the last frame. Keeps one position in the source."""
+
+    def __init__(self, source: SampleSource, wanted: Subscribe, *, from_newest: bool = False) -> None:
+        """Begin after the newest sample, or after `wanted.since_seq`; with `from_newest` with the newest itself."""
+        self._source = source
         self._wanted = wanted
-        newest = host.latest()
+        newest = source.latest()
         now = 0 if newest is None else int(newest["seq"][0])
+        if from_newest:
+            self._position, self._every = max(0, now - 1), wanted.every_sample
+            self.dropped = 0
+            return
         self._position = now if wanted.since_seq is None else wanted.since_seq
         self._every = wanted.every_sample or wanted.since_seq is not None
         self.dropped = 0
@@ -47,7 +62,7 @@ class FrameMaker:
             # After a resume the client has caught up, and gets the newest only unless it asked for all.
             self._every = self._wanted.every_sample
             return
-        newest = self._host.latest()
+        newest = self._source.latest()
         if newest is not None and int(newest["seq"][0]) != self._position:
             self._position = int(newest["seq"][0])
             yield self._frame(newest)
@@ -55,7 +70,7 @@ class FrameMaker:
     def _all(self) -> Iterator[str | bytes]:
         sent = 0
         while sent < BEHIND:
-            rows, lost = self._host.samples(self._position, MOST)
+            rows, lost = self._source.samples(self._position, MOST)
             self.dropped += lost
             if not len(rows):
                 return

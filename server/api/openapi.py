@@ -9,11 +9,24 @@ from pydantic.json_schema import models_json_schema
 from server.api.problems import MEDIA_TYPE
 from server.api.wire import Problem
 from server.api.wire_solve import Opened, OpenSolve, Solved, SolveProblem, SolveSamples
-from server.api.wire_stream import Hello, Ping, Pong, SessionChanged, StreamProblem, Subscribe, Telemetry
+from server.api.wire_stream import (
+    Hello,
+    Pause,
+    Ping,
+    Play,
+    Pong,
+    Replayed,
+    Seek,
+    SessionChanged,
+    Speed,
+    StreamProblem,
+    Subscribe,
+    Telemetry,
+)
 from server.api.wire_trajectories import TrajectoryIn
 
-MESSAGES = (Subscribe, Ping, OpenSolve, SolveSamples, TrajectoryIn)
-ANSWERS = (Problem, Hello, Telemetry, SessionChanged, Pong, StreamProblem, Opened, Solved, SolveProblem)
+MESSAGES = (Subscribe, Ping, Seek, Speed, Pause, Play, OpenSolve, SolveSamples, TrajectoryIn)
+ANSWERS = (Problem, Hello, Telemetry, SessionChanged, Replayed, Pong, StreamProblem, Opened, Solved, SolveProblem)
 
 
 def contract(app: FastAPI) -> dict[str, Any]:

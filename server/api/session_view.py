@@ -2,13 +2,16 @@
 
 import math
 from dataclasses import asdict
+from typing import Any
 
 from server.api.hosts import RigHosts
+from server.api.playback import RunPlayback
 from server.api.wire import Four
 from server.api.wire_session import AlarmOut, LeaseOut, PlanRef, RecorderOut, RigHealth, SessionOut
 from server.runtime.wire import Health, Snapshot
 from server.session.alarms import Alarm
 from server.session.lease import Lease
+from server.session.states import STATES
 
 
 def session_out(hosts: RigHosts, rig: str, rate_hz: float) -> SessionOut:
@@ -77,9 +80,45 @@ def _alarm(alarm: Alarm) -> AlarmOut:
     return AlarmOut.model_validate(values)
 
 
-def _without_process(rig: str, rate_hz: float) -> SessionOut:
+def replayed_session(rig: str, playback: RunPlayback, row: Any) -> SessionOut:
+    """The session as a record has it at the telemetry row; nothing is allowed in it."""
+    session = _without_process(rig, playback.rate_hz, f"replay of {playback.run}")
+    if row is None:
+        return session.model_copy(update={"allowed": []})
+    plan = playback.plan
+    alarms = [_recorded_alarm(event) for event in playback.alarms()]
+    a, b, c, d = row["measured"].tolist()
+    return session.model_copy(
+        update={
+            "state": STATES[row["state"]].value,
+            "revision": int(row["revision"]),
+            "allowed": [],
+            "lease": session.lease.model_copy(update={"holder": playback.who or None}),
+            "plan": PlanRef(
+                plan_id=plan["plan_id"],
+                plan_hash=plan["plan_hash"],
+                rig_hash=plan["rig_hash"],
+                live=plan["live"],
+                name="",
+                duration_s=None,
+            )
+            if plan
+            else None,
+            "alarms": alarms,
+            "history": alarms,
+            "run_id": playback.run,
+            "pose_deg": (a, b, c, d) if all(map(math.isfinite, (a, b, c, d))) else None,
+        }
+    )
+
+
+def _recorded_alarm(event: dict[str, Any]) -> AlarmOut:
+    return AlarmOut.model_validate({name: event.get(name) for name in AlarmOut.model_fields if name in event})
+
+
+def _without_process(rig: str, rate_hz: float, why: str = "no rig process: connect starts one") -> SessionOut:
     health = RigHealth(
-        realtime="no rig process: connect starts one",
+        realtime=why,
         rate_hz=rate_hz,
         lateness_us={},
         busy_us=0.0,

@@ -1,4 +1,4 @@
-"""Messages of the WebSocket /rigs/{rig}/stream, both ways, tagged by `type`.
+"""Messages of the WebSockets /rigs/{rig}/stream and /runs/{run}/stream, both ways, tagged by `type`.
 
 A binary telemetry frame is little-endian: magic u4 "FPT1", version u2, count u2, seq u8, server_time f8, dropped u8,
 then `count` records as `hello.record` describes them.
@@ -31,7 +31,34 @@ class Ping(Wire):
     t: float
 
 
-StreamIn = Annotated[Subscribe | Ping, Field(discriminator="type")]
+class Seek(Wire):
+    """Replay only: to that time, playing or not. The newest sample there is sent at once."""
+
+    type: Literal["seek"]
+    time_s: float = Field(ge=0.0, description="After the run's first sample")
+
+
+class Speed(Wire):
+    """Replay only."""
+
+    type: Literal["speed"]
+    factor: float = Field(gt=0.0, le=100.0, description="1: as fast as it was")
+
+
+class Pause(Wire):
+    """Replay only."""
+
+    type: Literal["pause"]
+
+
+class Play(Wire):
+    """Replay only: on from here; from the beginning where it has come to the end."""
+
+    type: Literal["play"]
+
+
+Playback = Seek | Speed | Pause | Play
+StreamIn = Annotated[Subscribe | Ping | Playback, Field(discriminator="type")]
 
 
 class RecordField(Wire):
@@ -50,8 +77,17 @@ class Record(Wire):
     fields: list[RecordField]
 
 
+class ReplayOf(Wire):
+    """The run that is replayed."""
+
+    run: str
+    duration_s: float
+    started: float | None = Field(description="Seconds since 1970, of the first sample")
+    scene: str = Field(description="Where this client's scene of it is, while the WebSocket is open")
+
+
 class Hello(Wire):
-    """First message of the server."""
+    """First message of the server. `replay` is null where a rig is streamed as it lives."""
 
     type: Literal["hello"] = "hello"
     schema_: Literal["fullpose.stream/1"] = Field(default="fullpose.stream/1", alias="schema")
@@ -60,6 +96,7 @@ class Hello(Wire):
     session: SessionOut
     fields: list[str]
     record: Record
+    replay: ReplayOf | None = None
 
 
 class Telemetry(Wire):
@@ -98,6 +135,15 @@ class SessionChanged(Wire):
     session: SessionOut
 
 
+class Replayed(Wire):
+    """Where a replay is: the answer to seek, speed, pause and play; with the topic session also when it ends."""
+
+    type: Literal["replay"] = "replay"
+    time_s: float
+    playing: bool
+    factor: float
+
+
 class Pong(Wire):
     type: Literal["pong"] = "pong"
     t: float
@@ -111,4 +157,4 @@ class StreamProblem(Wire):
     problem: Problem
 
 
-StreamOut = Annotated[Hello | Telemetry | SessionChanged | Pong | StreamProblem, Field(discriminator="type")]
+StreamOut = Annotated[Hello | Telemetry | SessionChanged | Replayed | Pong | StreamProblem, Field(discriminator="type")]

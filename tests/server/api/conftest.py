@@ -18,3 +18,23 @@ def operator(server: LiveServer) -> Operator:
     made = Operator(server)
     made.to_idle()
     return made
+
+
+@pytest.fixture(scope="module")
+def run(server: LiveServer) -> str:
+    """A flight, flown."""
+    operator = Operator(server)
+    operator.to_idle()
+    plan = server.plan()
+    operator.command("load", plan=plan["id"])
+    operator.command("arm")
+    operator.command("start")
+    operator.wait("running")
+    operator.wait("armed")
+    operator.to_idle()
+    for _ in range(200):
+        runs = server.http.get("/runs").json()
+        if runs and runs[0]["complete"]:
+            assert runs[0]["plan_hash"] == plan["plan_hash"]
+            return str(runs[0]["id"])
+    raise AssertionError(f"no complete run: {runs}")

@@ -6,30 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow.parquet as pq
-import pytest
 
 from server.runtime.replay import read_samples
-from tests.server.api.live_server import LiveServer, Operator
-
-
-@pytest.fixture(scope="module")
-def run(server: LiveServer) -> str:
-    """A flight, flown."""
-    operator = Operator(server)
-    operator.to_idle()
-    plan = server.plan()
-    operator.command("load", plan=plan["id"])
-    operator.command("arm")
-    operator.command("start")
-    operator.wait("running")
-    operator.wait("armed")
-    operator.to_idle()
-    for _ in range(200):
-        runs = server.http.get("/runs").json()
-        if runs and runs[0]["complete"]:
-            assert runs[0]["plan_hash"] == plan["plan_hash"]
-            return str(runs[0]["id"])
-    raise AssertionError(f"no complete run: {runs}")
+from tests.server.api.live_server import LiveServer
 
 
 def test_a_run_tells_what_was_flown_and_how_well(server: LiveServer, run: str) -> None:

@@ -1,0 +1,125 @@
+"""The WebSocket /runs/{run}/stream: a recorded run through the protocol of the live stream, with a scene of its own.
+
+It plays from the first subscription on, unless the client has said pause before.
+"""
+
+import asyncio
+import secrets
+import time
+from collections.abc import AsyncIterator
+from typing import Any
+
+from fastapi import APIRouter, WebSocket
+
+from server.api.frames import SampleSource, record
+from server.api.playback import PlaybackError, RunPlayback
+from server.api.problems import ApiError
+from server.api.services import ServicesDep
+from server.api.session_view import replayed_session
+from server.api.stream_client import StreamClient
+from server.api.wire import Wire
+from server.api.wire_session import SessionOut
+from server.api.wire_stream import Hello, Playback, Replayed, ReplayOf, SessionChanged
+from server.runtime.replay import RecordError
+from server.runtime.telemetry import SAMPLE
+from server.store.errors import FileError
+
+LOOK_S = 1.0 / 30.0
+router = APIRouter(tags=["stream"])
+
+
+@router.websocket("/runs/{run}/stream")
+async def replay_stream(run: str, socket: WebSocket, services: ServicesDep) -> None:
+    """hello, then what the client subscribes to; seek, speed, pause and play move the clock of this client alone."""
+    path = await asyncio.to_thread(services.runs.path, run)
+    rig = (await asyncio.to_thread(services.runs.get, run)).rig
+    try:
+        playback = await asyncio.to_thread(RunPlayback, path)
+    except RecordError as error:
+        raise FileError(path.name, f"a record ({error})") from None
+    source = _Run(playback, rig)
+    await asyncio.to_thread(services.scenes.add, source.scene, rig, source.newest)
+    try:
+        await socket.accept()
+        await StreamClient(socket, source).run()
+    finally:
+        await asyncio.to_thread(services.scenes.remove, source.scene)
+
+
+class _Run:
+    def __init__(self, playback: RunPlayback, rig: str) -> None:
+        self._playback = playback
+        self._rig = rig
+        self._begun = False
+        # Of this client alone: others replay the same run at other times. No rig has a ~ in its name.
+        self.scene = f"run-{playback.run}~{secrets.token_hex(4)}"
+
+    def hello(self) -> Hello:
+        first = self._playback.latest()
+        return Hello(
+            server_time=time.time(),
+            rig=self._rig,
+            session=self._session(),
+            fields=list(SAMPLE.names or ()),
+            record=record(),
+            replay=ReplayOf(
+                run=self._playback.run,
+                duration_s=self._playback.duration_s,
+                started=None if first is None else float(first["wall_ns"][0]) / 1e9,
+                scene=f"/scene/{self.scene}/",
+            ),
+        )
+
+    def newest(self) -> Any:
+        """The sample for the scene."""
+        rows = self._playback.latest()
+        return None if rows is None else rows[0]
+
+    async def samples(self) -> SampleSource:
+        self._begin()
+        return self._playback
+
+    async def changes(self) -> AsyncIterator[Wire]:
+        self._begin()
+        shown: tuple[int, str] | None = None
+        told: tuple[bool, float] | None = None
+        while True:
+            status = self._status()
+            if (now := (status.playing, status.factor)) != told:
+                told = now
+                yield status
+            session = self._session()
+            if (state := (session.revision, session.state)) != shown:
+                shown = state
+                yield SessionChanged(revision=session.revision, server_time=time.time(), session=session)
+            await asyncio.sleep(LOOK_S)
+
+    def control(self, message: Playback) -> Wire:
+        try:
+            match message.type:
+                case "seek":
+                    self._playback.seek(message.time_s)
+                case "speed":
+                    self._playback.speed(message.factor)
+                case "pause":
+                    self._begun = True
+                    self._playback.pause()
+                case "play":
+                    self._begun = True
+                    self._playback.play()
+        except PlaybackError as error:
+            raise ApiError(422, "validation", str(error)) from None
+        return self._status()
+
+    def _begin(self) -> None:
+        if not self._begun:
+            self._begun = True
+            self._playback.play()
+
+    def _status(self) -> Replayed:
+        time_s, playing, factor = self._playback.position
+        return Replayed(time_s=time_s, playing=playing, factor=factor)
+
+    def _session(self) -> SessionOut:
+        rows = self._playback.latest()
+        return replayed_session(self._rig, self._playback, None if rows is None else rows[0])
