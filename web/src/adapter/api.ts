@@ -80,6 +80,11 @@ async function request<T>(method: string, path: string, body?: unknown, keepaliv
 
 const at = encodeURIComponent;
 
+function webSocket(path: string): string {
+  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+  return `${scheme}//${location.host}${BASE}${path}`;
+}
+
 export const api = {
   health: () => request<Health>("GET", "/health"),
   rigs: () => request<Rig[]>("GET", "/rigs"),
@@ -113,16 +118,15 @@ export const api = {
   estop: (rig: string) => request<CommandOut>("POST", `/rigs/${at(rig)}/estop`),
 
   runs: () => request<Run[]>("GET", "/runs"),
+  run: (id: string) => request<Run>("GET", `/runs/${at(id)}`),
   exportUrl: (run: string, format: "csv" | "parquet" | "mcap") => `${BASE}/runs/${at(run)}/export?format=${format}`,
 
   /** Shows a plan's pose as a ghost beside the rig; null takes it away. */
   scenePose: (rig: string, pose: { plan_id: string; time_s: number } | null) =>
     request<ScenePose | null>("POST", `/rigs/${at(rig)}/scene/pose`, pose, pose === null), // also from a page that is being left
 
-  streamUrl: (rig: string) => {
-    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-    return `${scheme}//${location.host}${BASE}/rigs/${at(rig)}/stream`;
-  },
+  streamUrl: (rig: string) => webSocket(`/rigs/${at(rig)}/stream`),
+  replayUrl: (run: string) => webSocket(`/runs/${at(run)}/stream`),
   sceneUrl: (rig: string) => `/scene/${at(rig)}/`,
 };
 

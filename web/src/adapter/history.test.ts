@@ -42,6 +42,14 @@ it("begins anew where time goes backward, as after a new rig process", () => {
   expect([...history.time()]).toEqual([3]);
 });
 
+it("keeps what is before the time a replay is set back to", () => {
+  const history = new History(5);
+  for (const time of [1, 2, 3, 4]) history.push(sample(time));
+  history.push(sample(2.5));
+  expect([...history.time()]).toEqual([1, 2, 2.5]);
+  expect([...history.channel(CHANNEL.measured)]).toEqual([1, 2, 2.5]);
+});
+
 it("has no channel beyond its last", () => {
   expect(() => new History(2).channel(18)).toThrow(RangeError);
 });

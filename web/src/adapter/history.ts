@@ -22,9 +22,9 @@ export class History {
     return this.#end - this.#start;
   }
 
-  /** Adds a sample; one whose time does not advance (a rig process that started anew) begins a new history. */
+  /** Adds a sample; one whose time does not advance (a replay set back, a machine that started anew) takes the place of what is after it. */
   push(sample: Sample): void {
-    if (this.length > 0 && !(sample.timeS > (this.#time[this.#end - 1] ?? -Infinity))) this.clear();
+    while (this.length > 0 && !(sample.timeS > (this.#time[this.#end - 1] ?? -Infinity))) this.#end--;
     if (this.#end === this.#time.length) this.#slideBack();
     const at = this.#end;
     this.#time[at] = sample.timeS;
@@ -38,10 +38,6 @@ export class History {
     this.#set(CHANNEL.trackingError, at, sample.trackingErrorDeg);
     this.#end++;
     if (this.length > this.capacity) this.#start++;
-  }
-
-  clear(): void {
-    this.#start = this.#end = 0;
   }
 
   /** Times of the samples [s]. */

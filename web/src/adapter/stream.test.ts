@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it } from "vitest";
 import type { Snapshot } from "../contract/types";
 import type { LinkEvent } from "./link";
-import { backoffMs, PING_PERIOD_MS, SILENCE_MS, Stream, type Socket, type Surroundings } from "./stream";
+import { backoffMs, PING_PERIOD_MS, RECORD_MS, SILENCE_MS, Stream, type Socket, type Surroundings } from "./stream";
 import { HEADER_BYTES, type Batch } from "./telemetry";
 
 /** A network and a clock in memory. */
@@ -183,6 +183,37 @@ describe("the stream", () => {
     expect(world.timers).toBe(0);
     world.pass(60_000);
     expect(world.sockets).toHaveLength(1);
+  });
+});
+
+describe("a replay", () => {
+  it("is given time to be read, and its clock is set before the subscription", () => {
+    const world = new World();
+    const told: unknown[] = [];
+    const stream = new Stream(
+      "ws://x",
+      {
+        link: () => undefined,
+        batch: () => undefined,
+        replay: (of) => {
+          told.push(of.run);
+          stream.control({ type: "seek", time_s: 3 });
+        },
+        replayed: ({ playing }) => told.push(playing),
+      },
+      world.around,
+      30,
+      "binary",
+      RECORD_MS,
+    );
+    stream.control({ type: "pause" }); // not before hello: there is no clock yet
+    world.pass(SILENCE_MS * 4);
+    expect(world.socket.closed).toBe(false);
+    world.socket.says({ ...HELLO, replay: { run: "r1", duration_s: 9, started: 0, scene: "/scene/r1~0/" } });
+    expect(world.socket.sent.map(({ type }) => type)).toEqual(["seek", "subscribe", "ping"]);
+    world.socket.says({ type: "replay", time_s: 3, playing: false, factor: 1 });
+    expect(told).toEqual(["r1", false]);
+    stream.close();
   });
 });
 

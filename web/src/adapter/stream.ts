@@ -1,11 +1,13 @@
 /** The stream client of one rig: owns the socket, the reconnects and the pings; decides nothing. */
-import { STREAM_SCHEMA, type ServerMessage, type Subscribe } from "../contract/types";
+import { STREAM_SCHEMA, type PlaybackControl, type Replayed, type ReplayOf, type ServerMessage, type Subscribe } from "../contract/types";
 import type { LinkEvent } from "./link";
 import { decodeBinary, decodeJson, FrameError, layoutOf, type Batch, type Layout } from "./telemetry";
 
 export const PING_PERIOD_MS = 1000;
 /** No word from the server for this long: the socket is dead even where the network has not said so. */
 export const SILENCE_MS = 5000;
+/** A server that has a record to read before it says hello is given this: to try again would begin that anew. */
+export const RECORD_MS = 60_000;
 
 /** Delay before attempt `n` (1, 2, ...): doubles from 250 ms to 5 s, spread so that consoles do not return in step. */
 export function backoffMs(attempt: number, random: number): number {
@@ -41,6 +43,9 @@ export const BROWSER: Surroundings = {
 export interface Listener {
   link: (event: LinkEvent) => void;
   batch: (batch: Batch) => void;
+  /** A replay has been opened; what is sent to it now comes before the subscription. */
+  replay?: (of: ReplayOf) => void;
+  replayed?: (where: Replayed) => void;
 }
 
 export class Stream {
@@ -57,6 +62,8 @@ export class Stream {
     private readonly around: Surroundings = BROWSER,
     private readonly rateHz = 30,
     private readonly encoding: Subscribe["encoding"] = "binary",
+    /** How long the server may take to say hello. */
+    private readonly helloMs = SILENCE_MS,
   ) {
     this.#connect();
   }
@@ -64,6 +71,11 @@ export class Stream {
   close(): void {
     this.#closed = true;
     this.#drop();
+  }
+
+  /** Moves the clock of a replay. */
+  control(message: PlaybackControl): void {
+    if (this.#layout) this.#socket?.send(JSON.stringify(message));
   }
 
   #connect(): void {
@@ -102,6 +114,7 @@ export class Stream {
         this.#layout = layoutOf(message.record);
         this.#attempt = 0;
         this.listener.link({ type: "opened", session: message.session });
+        if (message.replay) this.listener.replay?.(message.replay);
         const subscribe: Subscribe = {
           type: "subscribe",
           topics: ["telemetry", "session"],
@@ -116,6 +129,9 @@ export class Stream {
       }
       case "session":
         this.listener.link({ type: "session", session: message.session });
+        break;
+      case "replay":
+        this.listener.replayed?.(message);
         break;
       case "telemetry":
         if (this.#layout) this.#frame(decodeJson(message, this.#layout));
@@ -149,7 +165,7 @@ export class Stream {
 
   #watch(): void {
     this.#later(() => {
-      if (this.around.now() - this.#heardAt > SILENCE_MS) this.#lost("no word from the server");
+      if (this.around.now() - this.#heardAt > (this.#layout ? SILENCE_MS : this.helloMs)) this.#lost("no word from the server");
       else this.#watch();
     }, PING_PERIOD_MS);
   }

@@ -943,12 +943,14 @@ export interface components {
         };
         /**
          * Hello
-         * @description First message of the server.
+         * @description First message of the server. `replay` is null where a rig is streamed as it lives.
          */
         Hello: {
             /** Fields */
             fields: string[];
             record: components["schemas"]["Record"];
+            /** @default null */
+            replay: components["schemas"]["ReplayOf"] | null;
             /** Rig */
             rig: string;
             /**
@@ -1301,6 +1303,17 @@ export interface components {
             type: "open";
         };
         /**
+         * Pause
+         * @description Replay only.
+         */
+        Pause: {
+            /**
+             * Type
+             * @constant
+             */
+            type: "pause";
+        };
+        /**
          * PayloadOut
          * @description What the rig carries, for the scene: a box or a mesh file.
          */
@@ -1501,6 +1514,17 @@ export interface components {
             /** Time S */
             time_s: number[];
         };
+        /**
+         * Play
+         * @description Replay only: on from here; from the beginning where it has come to the end.
+         */
+        Play: {
+            /**
+             * Type
+             * @constant
+             */
+            type: "play";
+        };
         /** Pong */
         Pong: {
             /** Server Time */
@@ -1627,6 +1651,44 @@ export interface components {
              * @description NumPy type string, little-endian
              */
             type: string;
+        };
+        /**
+         * Replayed
+         * @description Where a replay is: the answer to seek, speed, pause and play; with the topic session also when it ends.
+         */
+        Replayed: {
+            /** Factor */
+            factor: number;
+            /** Playing */
+            playing: boolean;
+            /** Time S */
+            time_s: number;
+            /**
+             * Type
+             * @default replay
+             * @constant
+             */
+            type: "replay";
+        };
+        /**
+         * ReplayOf
+         * @description The run that is replayed.
+         */
+        ReplayOf: {
+            /** Duration S */
+            duration_s: number;
+            /** Run */
+            run: string;
+            /**
+             * Scene
+             * @description Where this client's scene of it is, while the WebSocket is open
+             */
+            scene: string;
+            /**
+             * Started
+             * @description Seconds since 1970, of the first sample
+             */
+            started: number | null;
         };
         /**
          * ReportOut
@@ -1835,6 +1897,22 @@ export interface components {
             /** Time S */
             time_s: number;
         };
+        /**
+         * Seek
+         * @description Replay only: to that time, playing or not. The newest sample there is sent at once.
+         */
+        Seek: {
+            /**
+             * Time S
+             * @description After the run's first sample
+             */
+            time_s: number;
+            /**
+             * Type
+             * @constant
+             */
+            type: "seek";
+        };
         /** ServerLimits */
         ServerLimits: {
             /** Max Solve Samples */
@@ -2016,6 +2094,22 @@ export interface components {
              * @constant
              */
             type: "samples";
+        };
+        /**
+         * Speed
+         * @description Replay only.
+         */
+        Speed: {
+            /**
+             * Factor
+             * @description 1: as fast as it was
+             */
+            factor: number;
+            /**
+             * Type
+             * @constant
+             */
+            type: "speed";
         };
         /** Start */
         Start: {

@@ -29,12 +29,16 @@ export type TrajectoryPreview = Schemas["TrajectoryPreview"];
 
 // The stream's messages.
 export type RecordDescription = Schemas["Record"];
+export type PlaybackControl = Schemas["Seek"] | Schemas["Speed"] | Schemas["Pause"] | Schemas["Play"];
+export type Replayed = Schemas["Replayed"];
+export type ReplayOf = Schemas["ReplayOf"];
 export type Subscribe = Schemas["Subscribe"];
 export type TelemetryMessage = Schemas["Telemetry"];
 export type ServerMessage =
   | Schemas["Hello"]
   | Schemas["SessionChanged"]
   | Schemas["Telemetry"]
+  | Schemas["Replayed"]
   | Schemas["Pong"]
   | Schemas["StreamProblem"];
 

@@ -1,11 +1,11 @@
-/** Paths of the pages: /operate/{rig}, /trajectories/{sha}, /plans/{id}, /compare/{id}, /runs, /rigs. */
+/** Paths of the pages: /operate/{rig}, /trajectories/{sha}, /plans/{id}, /compare/{id}, /runs/{id}, /rigs. */
 
 export const PAGES = ["operate", "trajectories", "plans", "compare", "runs", "rigs"] as const;
 export type Page = (typeof PAGES)[number];
 
 export interface Route {
   page: Page;
-  /** What the page shows: a rig, a trajectory, a plan, a comparison; null for none named. */
+  /** What the page shows: a rig, a trajectory, a plan, a comparison, a run; null for none named. */
   item: string | null;
 }
 

@@ -5,6 +5,7 @@ import { NO_LINK, reduce, type Link, type LinkEvent } from "../adapter/link";
 import { Stream } from "../adapter/stream";
 import { sampleAt, type Batch, type Sample } from "../adapter/telemetry";
 import type { CommandOut, Lease, LeaseToken, Snapshot } from "../contract/types";
+import type { Feed } from "./feed";
 import { dataAgeMs, freshness, type Freshness } from "../rules/freshness";
 
 /** Thirty a second, for a minute. */
@@ -18,7 +19,7 @@ export interface Note {
   text: string;
 }
 
-class Operated {
+class Operated implements Feed {
   name: string | null = $state(null);
   link: Link = $state.raw(NO_LINK);
   latest: Sample | null = $state.raw(null);
