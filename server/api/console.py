@@ -27,8 +27,10 @@ class _Console(StaticFiles):
         try:
             response = await super().get_response(path, scope)
         except HTTPException as error:
-            # A name with an ending is a file that is not there; the rest are pages inside the console.
-            if error.status_code != 404 or path.startswith("api") or "." in Path(path).name:
+            # Files are in assets/ or at the top with an ending; the rest are pages of the console, /operate/my.rig too.
+            parts = Path(path).parts
+            file = parts[:1] == ("assets",) or (len(parts) == 1 and "." in path)
+            if error.status_code != 404 or path.startswith("api") or file:
                 raise
             path, response = "index.html", await super().get_response("index.html", scope)
         if path in (".", "index.html"):

@@ -136,6 +136,8 @@ def test_the_console_answers_for_its_own_routes(tmp_path: Path) -> None:
             return await client.get(path)
 
     assert asyncio.run(get("/")).text == asyncio.run(get("/rigs/vertical-4")).text == "<html>console</html>"
+    assert asyncio.run(get("/operate/my.rig")).text == "<html>console</html>"
+    assert asyncio.run(get("/gone.js")).status_code == asyncio.run(get("/assets/gone")).status_code == 404
     assert "immutable" in asyncio.run(get("/assets/a-1234.js")).headers["cache-control"]
 
 
