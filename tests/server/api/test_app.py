@@ -6,6 +6,7 @@ from pathlib import Path
 
 import httpx
 import pytest
+from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 from websockets.exceptions import InvalidStatus
@@ -131,13 +132,15 @@ def test_the_console_answers_for_its_own_routes(tmp_path: Path) -> None:
     (tmp_path / "assets" / "a-1234.js").write_text("1")
 
     async def get(path: str) -> httpx.Response:
-        transport = httpx.ASGITransport(app=console(tmp_path), raise_app_exceptions=False)
+        transport = httpx.ASGITransport(app=console(tmp_path))
         async with httpx.AsyncClient(transport=transport, base_url="http://localhost") as client:
             return await client.get(path)
 
     assert asyncio.run(get("/")).text == asyncio.run(get("/rigs/vertical-4")).text == "<html>console</html>"
     assert asyncio.run(get("/operate/my.rig")).text == "<html>console</html>"
-    assert asyncio.run(get("/gone.js")).status_code == asyncio.run(get("/assets/gone")).status_code == 404
+    for missing in ("/gone.js", "/assets/gone", "/api/v1/gone"):
+        with pytest.raises(HTTPException, match="404"):
+            asyncio.run(get(missing))
     assert "immutable" in asyncio.run(get("/assets/a-1234.js")).headers["cache-control"]
 
 
