@@ -64,11 +64,17 @@ def least_error(
         over[0, 0] = np.inf
     bad = np.flatnonzero(over.max(axis=1) > MET)
     stretches = _merged([_Stretch(int(k), int(k) + 1, PADDING) for k in bad], time)
+
+    def again() -> BestEffort:  # what cannot be mended place by place
+        return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start), rig, options, start)
+
     freed: dict[tuple[int, int], tuple[Array, NDArray[np.int16], float]] = {}
     while True:
         grown: list[_Stretch] = []
         for stretch in stretches:
             begin, end = stretch.range(time)
+            if time[end - 1] - time[begin] > LONGEST:
+                return again()
             if (begin, end) not in freed:
                 freed[begin, end] = _free(
                     time[begin:end], attitude[begin:end], exact[begin:end], rig, options, (begin > 0, end < n),
@@ -76,9 +82,7 @@ def least_error(
                 )  # fmt: skip
             if freed[begin, end][2] > MET:
                 if (begin == 0 and end == n) or stretch.padding >= LARGEST_PADDING:
-                    return from_feasible(
-                        time, attitude, feasible(time, attitude, angles, rig, start), rig, options, start
-                    )
+                    return again()
                 stretch = _Stretch(stretch.begin, stretch.end, 2.0 * stretch.padding)
             grown.append(stretch)
         merged = _merged(grown, time)
@@ -89,7 +93,8 @@ def least_error(
     for stretch in stretches:
         part = slice(*stretch.range(time))
         x[part], limited[part], _ = freed[part.start, part.stop]
-    return BestEffort(x, limited, worst(time, x, limits)[0])
+    over = worst(time, x, limits)[0]
+    return BestEffort(x, limited, over) if over <= MET else again()
 
 
 def feasible(time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None) -> Array:
