@@ -18,6 +18,7 @@ function sample(timeS: number): Sample {
     followingErrorDeg: [0, 0, 0, 0],
     margin: 1,
     latenessUs: 0,
+    flags: 0,
   };
 }
 

@@ -112,6 +112,9 @@ export function decodeJson(message: TelemetryMessage, layout: Layout): Batch {
 /** Four values, one a frame: base, outer, middle, inner. */
 export type Four = readonly [number, number, number, number];
 
+/** Bits of a sample's flags that the console shows (server/runtime/telemetry.py). */
+export const FLAG = { stale: 32 };
+
 /** One record, in the units of the surface: degrees and seconds. */
 export interface Sample {
   seq: number;
@@ -131,6 +134,8 @@ export interface Sample {
   followingErrorDeg: Four;
   margin: number;
   latenessUs: number;
+  /** Bits, see `FLAG`. */
+  flags: number;
 }
 
 /** Record `row` of a batch; a field the server does not send is not a number. */
@@ -156,5 +161,6 @@ export function sampleAt(batch: Batch, row: number): Sample {
     followingErrorDeg: four("following_error_deg"),
     margin: one("margin"),
     latenessUs: one("lateness_us"),
+    flags: one("flags"),
   };
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import contract from "../../../docs/openapi.json";
-import { COMMANDS, nextStep, recoveryStep, verdict, type Circumstances } from "./commands";
+import { COMMANDS, nextStep, recoveryStep, shownCommands, verdict, type Circumstances } from "./commands";
 
 const ARMED: Circumstances = {
   state: "armed",
@@ -72,7 +72,7 @@ it("acknowledge needs an alarm, reset needs none to be waiting", () => {
 });
 
 it("the main button follows the run, and the way back from a trip", () => {
-  expect(["disconnected", "idle", "ready", "armed", "running", "held"].map(nextStep)).toEqual([
+  expect(["disconnected", "idle", "ready", "armed", "running", "held"].map((state) => nextStep(state))).toEqual([
     "connect",
     "load",
     "arm",
@@ -95,4 +95,22 @@ it("every button is a command of the contract", () => {
   );
   expect(known).toContain("estop");
   for (const { name } of COMMANDS) expect(known).toContain(name);
+});
+
+describe("a live source", () => {
+  it("puts go live in the place of start", () => {
+    const names = (live: boolean): string[] => shownCommands(live, 0).map(({ name }) => name);
+    expect(names(false)).toContain("start");
+    expect(names(false)).not.toContain("go_live");
+    expect(names(true)).toContain("go_live");
+    expect(names(true)).not.toContain("start");
+    expect(nextStep("armed", true)).toBe("go_live");
+  });
+});
+
+it("acknowledge stands in the place of reset while an alarm waits", () => {
+  const names = (waiting: number): string[] => shownCommands(false, waiting).map(({ name }) => name);
+  expect(names(1)).toContain("acknowledge");
+  expect(names(1)).not.toContain("reset");
+  expect(names(0)).toContain("reset");
 });

@@ -20,9 +20,10 @@ export const COMMANDS: readonly CommandLook[] = [
   still("load", "Load"),
   motion("arm", "Arm"),
   motion("start", "Start"),
+  motion("go_live", "Go live"),
   still("hold", "Hold", "Space"),
   motion("resume", "Resume", "Space"),
-  motion("move", "Move to…"),
+  motion("move", "Move, jog…"),
   motion("home", "Home"),
   still("disarm", "Disarm"),
   still("unload", "Unload"),
@@ -63,13 +64,19 @@ export function verdict(command: string, now: Circumstances): Verdict {
   return { enabled: true };
 }
 
+/** What stands in the bar: go live in the place of start where a live source is loaded, acknowledge in that of reset. */
+export function shownCommands(live: boolean, unacknowledged: number): readonly CommandLook[] {
+  const hidden = new Set([live ? "start" : "go_live", unacknowledged > 0 ? "reset" : "acknowledge"]);
+  return COMMANDS.filter(({ name }) => !hidden.has(name));
+}
+
 /** The step a run most likely takes next, drawn as the main button; null where there is none. */
-export function nextStep(state: string | null): string | null {
+export function nextStep(state: string | null, live = false): string | null {
   const steps: Record<string, string> = {
     disconnected: "connect",
     idle: "load",
     ready: "arm",
-    armed: "start",
+    armed: live ? "go_live" : "start",
     running: "hold",
     held: "resume",
   };
