@@ -154,6 +154,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
             method=row.method,
             options=row.options,
             start=None if start is None else (float(start[0]), float(start[1]), float(start[2]), float(start[3])),
+            remedy=row.remedy,
         )
 
     hosts = RigHosts(rig_store, config, directory)

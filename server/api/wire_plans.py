@@ -1,9 +1,9 @@
 """Plans, their reports and jobs on the wire."""
 
 from datetime import datetime
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from server.api.wire import FieldProblem, Four, FrameName, LimitName, Name, Notice, Sha256, Wire
 
@@ -123,6 +123,44 @@ class JobErrorOut(Wire):
     errors: list[FieldProblem] = Field(default=[])
 
 
+RemedyKind = Literal["slow_down", "heading_offset", "mounting_offset", "relax"]
+
+
+class RemedyIn(Wire):
+    """What may be changed to make a flight fit; `relax` may be asked of one frame or one kind of limit alone."""
+
+    kind: RemedyKind
+    frame: FrameName | None = None
+    limit: LimitName | None = None
+
+    @model_validator(mode="after")
+    def _names(self) -> Self:
+        if self.kind != "relax" and (self.frame is not None or self.limit is not None):
+            raise ValueError(f"{self.kind} has no frame and no limit: they are for relax")
+        return self
+
+
+class RemedyChange(Wire):
+    """What was changed, by how much (`unit`: times, deg, deg/s or deg/s^2), and that in words."""
+
+    what: str = Field(description="time; the axis yaw, pitch or roll; or frame and limit")
+    value: float
+    unit: str
+    statement: str
+
+
+class RemedyOut(Wire):
+    """The remedy that a plan is. What was changed is null until the search has ended."""
+
+    of: str = Field(description="The plan that it is a remedy of")
+    kind: RemedyKind
+    frame: FrameName | None
+    limit: LimitName | None
+    change: RemedyChange | None
+    sufficient: bool | None = Field(description="Whether the flight fits with it")
+    alternatives: list[RemedyChange] = Field(description="Other single limits that would do, the least raise first")
+
+
 class PlanOut(Wire):
     """A plan and its job. `flyable` plans can be loaded; the others say why not in `refusal`."""
 
@@ -153,6 +191,7 @@ class PlanOut(Wire):
     report: ReportOut | None
     verdict: str | None = Field(description="What the verdict rests on, in words")
     margins: MarginsOut | None
+    remedy: RemedyOut | None = Field(description="Null: the flight as it is")
 
 
 class PlanSamples(Wire):

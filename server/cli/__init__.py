@@ -14,7 +14,7 @@ from server.cli._exit import BAD_INPUT, fail
 from server.store.errors import StoreError
 from solver.errors import SolverError
 
-ORDER = ("demo", "serve", "solve", "compare", "rigs", "export", "doctor")
+ORDER = ("demo", "serve", "solve", "remedy", "compare", "rigs", "export", "doctor")
 
 
 def build() -> typer.Typer:

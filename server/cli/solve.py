@@ -61,6 +61,10 @@ def solve(
     with progress_bar("write") as progress:
         write_solution(out, solution, progress)
     if report is not None:
+        from server.store.report import margins_report
+        from solver.planner.verdict import margins
+
+        made["margins"] = margins_report(margins(solution.time, solution.angles, chosen), chosen)
         write_text(report, json.dumps(made, indent=2) + "\n")
     if plot is not None:
         from server.store.plot_page import plot_page

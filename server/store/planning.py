@@ -3,25 +3,26 @@
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from server.plan_folder import make_plan, write_plan
+from server.plan_folder import make_plan, rig_hash, write_plan
 from server.store.errors import StoreError
 from server.store.options import PLAN, method_options
 from server.store.planning_request import PlanRequest
-from server.store.report import make_report, why_infeasible
+from server.store.remedy import find_remedy
+from server.store.report import make_report, margins_report, why_infeasible
 from server.store.trajectories import read_arrays
-from solver.attitude import dcm_from_quaternion
+from solver.attitude import dcm_from_quaternion, quaternion_from_dcm
 from solver.errors import MethodError
 from solver.lead import lead_in, lead_out
-from solver.planner import plan
+from solver.planner import Plan, plan
 from solver.planner.verdict import margins
-from solver.resample import Resampled, resample
-from solver.rig import FRAMES
+from solver.resample import Resampled, continuous, resample
+from solver.rig import Rig
 from solver.solution import Solution
 from solver.solve import solve
 from solver.verify import Violation, verify
@@ -41,12 +42,12 @@ def make_plan_folder(request: PlanRequest, progress: Progress) -> dict[str, Any]
     flight = resample(np.array(time_s), np.array(q), request.rate_hz)
     if flight.time.size < 2:
         raise StoreError(f"a flight of at least two samples at {request.rate_hz:g} Hz is needed, this one is a moment")
-    at = flight.time - flight.time[0]
-    attitude = dcm_from_quaternion(flight.q)
-    made = _solve(request, at, attitude, progress)
+    made = _solve(request, flight.time - flight.time[0], flight.q, progress)
     solution = made.solution
+    at, rig = solution.time, solution.rig
     progress("verify", 0, 1)
-    report = make_report(solution, verify(at, solution.angles, request.rig, attitude))
+    report = make_report(solution, verify(at, solution.angles, rig, dcm_from_quaternion(made.q)))
+    report["rig"] = request.rig.name
     refusal = why_infeasible(report)
     before, after = _NONE, _NONE
     if refusal is None:
@@ -57,22 +58,32 @@ def make_plan_folder(request: PlanRequest, progress: Progress) -> dict[str, Any]
             refusal = f"the flight itself fits, its way in or out from rest does not: {error}"
     angles = np.concatenate([before, solution.angles, after])
     if refusal is None:
-        refusal = _whole(angles, request, len(before))
+        refusal = _whole(angles, request.rate_hz, rig, len(before))
+    remedy = made.remedy | {"sufficient": refusal is None} if made.remedy else None  # leads count, too
+    if refusal is None and rig_hash(rig) != rig_hash(request.rig):
+        refusal = f"it needs {made.remedy['statement']}: give the rig that, and plan again"
     progress("write", 0, 1)
-    result = _write(request, flight, solution, report, refusal, angles, (len(before), len(after)))
-    return result | {"verdict": made.verdict, "margins": _margins(at, solution)}
+    result = _write(request, flight, made, report, refusal, angles, (len(before), len(after)))
+    shown = margins_report(margins(at, solution.angles, rig), rig)
+    return result | {"verdict": made.verdict, "margins": shown, "remedy": remedy}
 
 
 @dataclass(frozen=True)
 class _Made:
-    """A solution, what its verdict rests on, and how to get its leads (which may raise `MethodError`)."""
+    """A solution, what its verdict rests on, and how to get its leads (which may raise `MethodError`).
+
+    `q` (n, 4) is the attitude that was solved, `solution.rig` the rig; both are the remedy's where it has changed them.
+    """
 
     solution: Solution
+    q: Array
     verdict: str
     leads: Callable[[], tuple[Array, Array]]
+    remedy: dict[str, Any] = field(default_factory=dict)
 
 
-def _solve(request: PlanRequest, at: Array, attitude: Array, progress: Progress) -> _Made:
+def _solve(request: PlanRequest, at: Array, q: Array, progress: Progress) -> _Made:
+    attitude = dcm_from_quaternion(q)
     options = method_options(request.method, request.options)
     start = None if request.start is None else np.array(request.start)
 
@@ -80,39 +91,71 @@ def _solve(request: PlanRequest, at: Array, attitude: Array, progress: Progress)
         progress("solve", done, total)
 
     clock = time.perf_counter
+    if request.remedy is not None:
+        return _remedied(request, at, attitude, start, options, tell)
     if request.method == PLAN:
         # Asked directly: the planner keeps room for its own leads and says what its verdict rests on.
         whole = plan(at, attitude, request.rig, start=start, options=options, clock=clock, progress=tell)
-
-        def planned() -> tuple[Array, Array]:
-            if whole.lead_note:
-                raise MethodError(whole.lead_note)
-            return whole.lead_in, whole.lead_out
-
-        return _Made(whole.solution, whole.verdict.statement, planned)
+        return _Made(whole.solution, q, whole.verdict.statement, lambda: _planned(whole))
     solution = solve(
         at, attitude, request.rig, method=request.method, options=options, start=start, clock=clock, progress=tell
     )
     verdict = "Every sample checked against the limits by code apart from the solver; another method may find more."
-    return _Made(solution, verdict, lambda: _leads(solution, request.rate_hz))
+    return _Made(solution, q, verdict, lambda: _leads(solution, request.rate_hz))
+
+
+def _remedied(
+    request: PlanRequest,
+    at: Array,
+    attitude: Array,
+    start: Array | None,
+    options: Any,
+    tell: Callable[[int, int], None],
+) -> _Made:
+    """The flight, changed until it fits; solved by the planner whatever the method of the plan it is a remedy of."""
+    asked = request.remedy or {}
+    found = find_remedy(
+        asked["kind"],
+        at,
+        attitude,
+        request.rig,
+        frame=asked.get("frame"),
+        limit=asked.get("limit"),
+        start=start,
+        options=options,
+        progress=tell,
+    )
+    whole = found.remedy.plan
+    q = continuous(quaternion_from_dcm(found.remedy.attitude))
+    # A rig with a limit raised is still that rig by name: the plan's page compares the two.
+    solution = replace(whole.solution, rig=replace(whole.solution.rig, name=request.rig.name))
+    return _Made(solution, q, whole.verdict.statement, lambda: _planned(whole), found.described)
+
+
+def _planned(whole: Plan) -> tuple[Array, Array]:
+    """The planner's own leads. Raises `MethodError` where there are none."""
+    if whole.lead_note:
+        raise MethodError(whole.lead_note)
+    return whole.lead_in, whole.lead_out
 
 
 def _write(
     request: PlanRequest,
     flight: Resampled,
-    solution: Solution,
+    made: _Made,
     report: dict[str, Any],
     refusal: str | None,
     angles: Array,
     leads: tuple[int, int],
 ) -> dict[str, Any]:
     n = len(angles)
+    solution = made.solution
     inner = slice(leads[0], n - leads[1])
     target, error = np.full((n, 4), math.nan), np.full(n, math.nan)
-    target[inner], error[inner] = flight.q, solution.error
+    target[inner], error[inner] = made.q, solution.error
     folder = make_plan(
         plan_id=request.plan_id,
-        rig=request.rig,
+        rig=solution.rig,
         rate_hz=request.rate_hz,
         angles=angles,
         target=target,
@@ -170,27 +213,10 @@ def end_motion(angles: Array, dt: float) -> tuple[Array, Array, Array]:
     return np.array(x[0]), rate, acceleration
 
 
-def _margins(at: Array, solution: Solution) -> dict[str, Any]:
-    """The wire's `MarginsOut`."""
-    found = margins(at, solution.angles, solution.rig)
-    kinds = {"position_deg": found.position, "rate_deg_s": found.rate, "acceleration_deg_s2": found.acceleration}
-
-    def margin(value: float, when: float) -> dict[str, float] | None:
-        return {"value": value, "time_s": when} if math.isfinite(value) else None
-
-    rows: dict[str, Any] = {
-        FRAMES[index]: {
-            kind: margin(math.degrees(table[index, 0]), float(table[index, 1])) for kind, table in kinds.items()
-        }
-        for index in solution.rig.geometry.frames
-    }
-    return rows | {"singularity": margin(*found.singularity)}
-
-
-def _whole(angles: Array, request: PlanRequest, lead: int) -> str | None:
+def _whole(angles: Array, rate_hz: float, rig: Rig, lead: int) -> str | None:
     """Why the path, leads included, is not inside the limits; None where it is."""
-    at = (np.arange(len(angles)) - lead) / request.rate_hz
-    violations = verify(at, angles, request.rig, None).violations
+    at = (np.arange(len(angles)) - lead) / rate_hz
+    violations = verify(at, angles, rig, None).violations
     return None if not violations else f"with its leads: {_sentence(violations[0])}"
 
 

@@ -21,6 +21,7 @@ class PlanRequest:
     method: str
     options: dict[str, Any]
     start: tuple[float, float, float, float] | None  # [rad]
+    remedy: dict[str, Any] | None = None  # kind, frame, limit: the flight is to be changed until it fits
 
     def to_json(self) -> dict[str, Any]:
         """Values for `json`; infinities stay infinities."""

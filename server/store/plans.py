@@ -33,8 +33,12 @@ class PlanStore:
         options: dict[str, Any],
         start_deg: list[float] | None,
         rate_hz: float,
+        remedy: dict[str, Any] | None = None,
     ) -> PlanRow:
-        """A new plan, queued. Raises `NotFoundError` for an unknown trajectory."""
+        """A new plan, queued; `remedy` (of, kind, frame, limit) makes it a remedy of another.
+
+        Raises `NotFoundError` for an unknown trajectory.
+        """
         with self._database.begin() as session:
             if session.get(TrajectoryRow, trajectory) is None:
                 raise NotFoundError("trajectory", trajectory)
@@ -46,6 +50,7 @@ class PlanStore:
                 method=method,
                 options=options,
                 start_deg=start_deg,
+                remedy=remedy,
                 rate_hz=rate_hz,
                 status="queued",
                 error=None,

@@ -1,13 +1,16 @@
 """The report of a solve: what DESIGN's contract names, from a solution and its verification. Degrees and seconds."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solver.rig import FRAMES
+from solver.rig import FRAMES, Rig
 from solver.solution import Solution, limited_name
 from solver.verify import Verification
+
+if TYPE_CHECKING:
+    from solver.planner.verdict import Margins  # the planner is heavy; who has margins has loaded it
 
 # A report is read by people and sent over the wire: the list of violations is cut, their number is not.
 MOST_VIOLATIONS = 1000
@@ -54,6 +57,22 @@ def make_report(solution: Solution, verification: Verification) -> dict[str, Any
         if blocking is None
         else {"time_s": float(blocking.time), "frame": blocking.frame, "limit": blocking.limit},
     }
+
+
+def margins_report(margins: "Margins", rig: Rig) -> dict[str, Any]:
+    """The smallest distance to each limit and to the singularity, and when; null where there is no limit."""
+    kinds = {"position_deg": margins.position, "rate_deg_s": margins.rate, "acceleration_deg_s2": margins.acceleration}
+
+    def margin(value: float, when: float) -> dict[str, float] | None:
+        return {"value": value, "time_s": when} if math.isfinite(value) else None
+
+    rows: dict[str, Any] = {
+        FRAMES[index]: {
+            kind: margin(math.degrees(table[index, 0]), float(table[index, 1])) for kind, table in kinds.items()
+        }
+        for index in rig.geometry.frames
+    }
+    return rows | {"singularity": margin(*margins.singularity)}
 
 
 def why_infeasible(report: dict[str, Any]) -> str | None:

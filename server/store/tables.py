@@ -55,6 +55,7 @@ class PlanRow(Table):
     method: Mapped[str] = mapped_column(String(64))
     options: Mapped[dict[str, Any]]
     start_deg: Mapped[list[Any] | None]
+    remedy: Mapped[dict[str, Any] | None]  # of (a plan), kind, frame, limit: what is asked for
     rate_hz: Mapped[float] = mapped_column(Float)
     status: Mapped[str] = mapped_column(String(16))
     error: Mapped[dict[str, Any] | None]

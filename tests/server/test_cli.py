@@ -228,3 +228,29 @@ def test_doctor_tells_one_line_a_check(tmp_path: Path) -> None:
 def test_export_says_what_there_is(tmp_path: Path) -> None:
     done = fullpose("export", "latest", "--data-dir", tmp_path)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+
+
+def test_remedy_says_what_was_changed_and_writes_the_flight_so(tmp_path: Path) -> None:
+    flight = written(tmp_path, HEADER + "".join(f"{k / 100},10,20,{9 * k}\n" for k in range(80)))
+    out, report = tmp_path / "out.csv", tmp_path / "r.json"
+    common = ("--rig", "vertical-4", "--out", out, "--report", report)
+    done = fullpose("remedy", flight, *common, "--kind", "slow_down")
+    assert done.returncode == 0, done.stderr
+    made = json.loads(report.read_text())
+    factor = made["remedy"]["value"]
+    assert done.stdout == f"flown {factor:.4g} times as slow\n"
+    assert made["feasible"] is made["remedy"]["sufficient"] is True
+    assert made["margins"]["inner"]["rate_deg_s"]["value"] >= 0.0
+    names, angles = table(out)
+    time_s = angles[:, names.index("time_s")]
+    assert factor > 1.0
+    assert time_s[-1] - time_s[0] == pytest.approx(0.79 * factor, rel=0.03)
+    for more, status, told in (
+        (("--kind", "magic"), 2, "slow_down, heading_offset"),
+        (("--kind", "slow_down", "--frame", "base"), 2, "relax"),
+        (("--kind", "relax", "--limit", "jerk"), 2, "acceleration"),
+        (("--kind", "relax", "--frame", "outer", "--limit", "acceleration"), 3, "outer acceleration"),
+    ):
+        done = fullpose("remedy", flight, *common, *more)
+        assert (done.returncode, done.stderr.count("\n")) == (status, 1), done.stderr
+        assert told in done.stderr

@@ -10,7 +10,18 @@ from fastapi import APIRouter, Query, Response
 
 from server.api.problems import ApiError
 from server.api.services import Services, ServicesDep
-from server.api.wire_plans import JobErrorOut, MethodOut, PlanIn, PlanOut, PlanSamples, ProgressOut, ReportOut
+from server.api.wire_plans import (
+    JobErrorOut,
+    MethodOut,
+    PlanIn,
+    PlanOut,
+    PlanSamples,
+    ProgressOut,
+    RemedyChange,
+    RemedyIn,
+    RemedyOut,
+    ReportOut,
+)
 from server.plan_folder import read_plan, rig_hash
 from server.store.errors import TransitionError
 from server.store.options import PLAN, PLAN_SOURCE, method_options, option_defaults
@@ -63,6 +74,31 @@ def list_plans(services: ServicesDep, trajectory: str | None = None, rig: str | 
 def get_plan(plan: str, services: ServicesDep) -> PlanOut:
     """One plan and how far it is."""
     return _out(services, services.plans.get(plan))
+
+
+@router.post("/plans/{plan}/remedies", status_code=202)
+async def add_remedy(plan: str, body: RemedyIn, response: Response, services: ServicesDep) -> PlanOut:
+    """Search what would make this plan's flight fit its rig: a plan of its own, with progress and cancel as any other.
+
+    It is planned with method plan. What was changed is in its `remedy`; it can be loaded like the rest, but for a
+    relaxed limit, which the rig must be given first.
+    """
+    of = await asyncio.to_thread(services.plans.get, plan)
+    entry = await asyncio.to_thread(services.rigs.get, of.rig)
+    row = await asyncio.to_thread(
+        services.plans.add,
+        trajectory=of.trajectory,
+        rig=of.rig,
+        rig_hash=rig_hash(entry.rig),
+        method=PLAN,
+        options=of.options if of.method == PLAN else {},
+        start_deg=of.start_deg,
+        rate_hz=services.settings.rig_rate_hz,
+        remedy={"of": plan, **body.model_dump()},
+    )
+    services.queue.submit(row.id)
+    response.headers["Location"] = f"/api/v1/plans/{row.id}"
+    return await asyncio.to_thread(_out, services, row)
 
 
 @router.get("/plans/{plan}/samples", responses={409: {"description": "The plan is not done"}})
@@ -125,6 +161,19 @@ def _out(services: Services, row: PlanRow) -> PlanOut:
             "report": ReportOut(**result["report"]) if result else None,
             "verdict": result.get("verdict"),
             "margins": result.get("margins"),
+            "remedy": None if row.remedy is None else _remedy(row.remedy, result.get("remedy") or {}),
+        }
+    )
+
+
+def _remedy(asked: dict[str, Any], found: dict[str, Any]) -> RemedyOut:
+    change = {name: found[name] for name in RemedyChange.model_fields} if found else None
+    return RemedyOut.model_validate(
+        {
+            **asked,
+            "change": change,
+            "sufficient": found.get("sufficient"),
+            "alternatives": found.get("alternatives", []),
         }
     )
 

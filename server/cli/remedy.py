@@ -1,0 +1,77 @@
+"""`fullpose remedy`: what would make a flight fit a rig."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from server.cli._exit import DONE, NOT_FEASIBLE, fail, say
+from server.cli._progress import progress_bar
+from server.cli.solve import _convention, _pose
+
+KINDS = "slow_down, heading_offset, mounting_offset, relax"
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("remedy", help="Search what would make a flight fit a rig, and plan it so.")(remedy)
+
+
+def remedy(
+    flight: Annotated[Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude.")],
+    rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
+    kind: Annotated[str, typer.Option(help=f"{KINDS}.")],
+    out: Annotated[Path, typer.Option(help="Angles of the changed flight; Parquet where it ends in .parquet.")],
+    report: Annotated[Path | None, typer.Option(help="Write the report as JSON, with what was changed.")] = None,
+    frame: Annotated[str | None, typer.Option(help="relax: of this frame alone.")] = None,
+    limit: Annotated[str | None, typer.Option(help="relax: of position, rate or acceleration alone.")] = None,
+    start: Annotated[
+        str | None, typer.Option(help="Start pose base,outer,middle,inner in degrees; without it the pose is free.")
+    ] = None,
+    convention: Annotated[
+        str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
+    ] = "nue",
+) -> None:
+    """Say what was changed, write OUT. Exit 2: bad input, OUT untouched. Exit 3: this remedy is not enough."""
+    from server.store.output_file import check_writable, write_solution, write_text
+    from server.store.remedy import NoRemedyError, check_kind, find_remedy
+    from server.store.report import make_report, margins_report
+    from server.store.rig_file import find_rig
+    from server.store.trajectory_file import read_trajectory
+    from solver.attitude import dcm_from_quaternion
+    from solver.verify import verify
+
+    check_kind(kind, frame, limit)
+    chosen = find_rig(rig).rig
+    pose = _pose(start)
+    for path in filter(None, (out, report)):
+        check_writable(path)
+    trajectory = read_trajectory(flight, _convention(convention))
+    for caution in trajectory.warnings:
+        say(f"{flight}: warning: {caution.message}")
+    attitude = dcm_from_quaternion(trajectory.q)
+    with progress_bar(kind) as progress:
+        try:
+            found = find_remedy(
+                kind, trajectory.time, attitude, chosen, frame=frame, limit=limit, start=pose, progress=progress
+            )
+        except NoRemedyError as error:
+            fail(f"{flight}: {error}", NOT_FEASIBLE)
+    done = found.remedy
+    made = make_report(done.plan.solution, verify(done.time, done.plan.solution.angles, done.rig, done.attitude))
+    made["rig"] = chosen.name
+    made["margins"] = margins_report(done.plan.margins, done.rig)
+    made["remedy"] = found.described
+    with progress_bar("write") as progress:
+        write_solution(out, done.plan.solution, progress)
+    if report is not None:
+        write_text(report, json.dumps(made, indent=2) + "\n")
+    if not made["feasible"]:
+        fail(
+            f"{flight} does not fit {chosen.name} by {kind}; the best found: {found.described['statement']}",
+            NOT_FEASIBLE,
+        )
+    for change in (found.described, *found.described["alternatives"]):
+        typer.echo(change["statement"])
+    raise typer.Exit(DONE)
