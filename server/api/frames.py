@@ -3,19 +3,15 @@
 import struct
 import time
 from collections.abc import Iterator
-from typing import Protocol
 
-import msgspec
-
+from server.api.frame_source import FrameSource, encoded
 from server.api.wire_stream import Record, RecordField, Subscribe
-from server.runtime.telemetry import SAMPLE, Samples, dtype_description
+from server.runtime.telemetry import SAMPLE, dtype_description
 
 HEADER = struct.Struct("<4sHHQdQ")
 MAGIC, VERSION = b"FPT1", 1
 MOST = 1000  # samples in one frame; a client that asks for more at its rate gets several
 BEHIND = 20_000  # samples that are sent in one go to a client that has fallen back
-
-_encode = msgspec.json.encode
 
 
 def record() -> Record:
@@ -23,20 +19,10 @@ def record() -> Record:
     return Record(size=SAMPLE.itemsize, fields=[RecordField(**field) for field in dtype_description()])
 
 
-class SampleSource(Protocol):
-    """A rig's ring, or a record that stands in for one."""
-
-    def latest(self) -> Samples | None:
-        """The newest sample (1,)."""
-
-    def samples(self, since_seq: int, limit: int) -> tuple[Samples, int]:
-        """Samples after `since_seq`, oldest first, at most `limit`, and how many were lost to the reader."""
-
-
 class FrameMaker:
     """What to send next: the newest sample, or all since the last frame. Keeps one position in the source."""
 
-    def __init__(self, source: SampleSource, wanted: Subscribe, *, from_newest: bool = False) -> None:
+    def __init__(self, source: FrameSource, wanted: Subscribe, *, from_newest: bool = False) -> None:
         """Begin after the newest sample, or after `wanted.since_seq`; with `from_newest` with the newest itself."""
         self._source = source
         self._wanted = wanted
@@ -62,10 +48,10 @@ class FrameMaker:
             # After a resume the client has caught up, and gets the newest only unless it asked for all.
             self._every = self._wanted.every_sample
             return
-        newest = self._source.latest()
-        if newest is not None and int(newest["seq"][0]) != self._position:
-            self._position = int(newest["seq"][0])
-            yield self._frame(newest)
+        newest = self._source.newest(self._wanted.encoding, self._position)
+        if newest is not None and newest[0] != self._position:
+            self._position, body = newest
+            yield self._frame(body, 1)
 
     def _all(self) -> Iterator[str | bytes]:
         sent = 0
@@ -76,26 +62,11 @@ class FrameMaker:
                 return
             self._position = int(rows["seq"][-1])
             sent += len(rows)
-            yield self._frame(rows)
+            yield self._frame(encoded(rows, self._wanted.encoding), len(rows))
 
-    def _frame(self, rows: Samples) -> str | bytes:
+    def _frame(self, body: bytes, count: int) -> str | bytes:
+        """`body` in this client's own envelope."""
         if self._wanted.encoding == "binary":
-            header = HEADER.pack(MAGIC, VERSION, len(rows), self._position, time.time(), self.dropped)
-            return header + rows.tobytes()
-        return telemetry_json(rows, self._position, self.dropped)
-
-
-def telemetry_json(rows: Samples, seq: int, dropped: int) -> str:
-    """A `Telemetry` message; what is not a number is null."""
-    message: dict[str, object] = {
-        "type": "telemetry",
-        "seq": seq,
-        "server_time": time.time(),
-        "dropped": dropped,
-        "sample_seq": rows["seq"].tolist(),
-    }
-    for name in SAMPLE.names or ():
-        if name != "seq":
-            message[name] = rows[name].tolist()
-    # msgspec writes nan and infinity as null, which is what JSON has for them.
-    return _encode(message).decode()
+            return HEADER.pack(MAGIC, VERSION, count, self._position, time.time(), self.dropped) + body
+        own = f'"seq":{self._position},"server_time":{time.time()!r},"dropped":{self.dropped}'
+        return f'{{"type":"telemetry",{own},{body.decode()}'

@@ -10,9 +10,11 @@ from fastapi import Depends, Header
 from numpy.typing import ArrayLike
 from starlette.requests import HTTPConnection
 
+from server.api.frame_source import FrameSource
 from server.api.hosts import RigHosts
 from server.api.problems import ApiError
 from server.api.run_files import RunFiles
+from server.api.wire import CLIENT_NAME
 from server.settings import Settings
 from server.store.audit import AuditLog
 from server.store.comparisons import Comparisons
@@ -51,19 +53,21 @@ class Services:
     hosts: RigHosts
     runs: RunFiles
     scenes: Scenes
+    frames: dict[str, FrameSource] = field(default_factory=dict)
     started: float = field(default_factory=time.time)
 
 
-def _services(connection: HTTPConnection) -> Services:
+# Async, though they wait for nothing: FastAPI hands what is not to a thread, and an E-stop would wait for that.
+async def _services(connection: HTTPConnection) -> Services:
     services = connection.app.state.services
     assert isinstance(services, Services)
     return services
 
 
-_WHO = re.compile(r"[\w.@:+-]{1,64}")
+_WHO = re.compile(CLIENT_NAME)
 
 
-def _who(
+async def _who(
     connection: HTTPConnection,
     x_fullpose_client: Annotated[
         str | None,

@@ -13,10 +13,11 @@ from typing import Protocol
 from fastapi import WebSocket, WebSocketDisconnect
 from pydantic import TypeAdapter
 
-from server.api.frames import FrameMaker, SampleSource
+from server.api.frame_source import FrameSource
+from server.api.frames import FrameMaker
 from server.api.problems import ApiError, problem_of
 from server.api.wire import Wire
-from server.api.wire_stream import Hello, Playback, Pong, StreamIn, StreamProblem, Subscribe
+from server.api.wire_stream import Hello, Playback, Pong, StopNow, StreamIn, StreamProblem, Subscribe
 
 _INCOMING: TypeAdapter[StreamIn] = TypeAdapter(StreamIn)
 
@@ -27,7 +28,7 @@ class Source(Protocol):
     def hello(self) -> Hello:
         """The first message."""
 
-    async def samples(self) -> SampleSource:
+    async def samples(self) -> FrameSource:
         """Where the samples are, once there are some."""
 
     def changes(self) -> AsyncIterator[Wire]:
@@ -35,6 +36,9 @@ class Source(Protocol):
 
     def control(self, message: Playback) -> Wire:
         """Do what only a replay can, and answer. Raises `ApiError`."""
+
+    def stop(self, message: StopNow) -> Awaitable[Wire]:
+        """Stop or E-stop, now; the answer is to be awaited, which may raise `ApiError` too. Raises `ApiError`."""
 
 
 class StreamClient:
@@ -45,6 +49,7 @@ class StreamClient:
         self._source = source
         self._wanted: Subscribe | None = None
         self._tasks: list[asyncio.Task[None]] = []
+        self._answers: set[asyncio.Task[None]] = set()
 
     async def run(self) -> None:
         """hello, then what the client subscribes to."""
@@ -68,11 +73,25 @@ class StreamClient:
                 self._wanted = message
                 await self._begin()
                 return
+            elif isinstance(message, StopNow):
+                # The answer waits for the rig's loop; what the client says next does not wait for the answer.
+                answering = asyncio.create_task(self._answer(self._source.stop(message)))
+                self._answers.add(answering)
+                answering.add_done_callback(self._answers.discard)
+                return
             else:
                 answer = Pong(t=message.t, server_time=time.time())
         except (ValueError, ApiError) as error:
             answer = StreamProblem(problem=problem_of(error))
         await self._socket.send_text(answer.model_dump_json())
+
+    async def _answer(self, work: Awaitable[Wire]) -> None:
+        try:
+            answer = await work
+        except ApiError as error:
+            answer = StreamProblem(problem=problem_of(error))
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError, OSError):  # done and audited, whoever listens
+            await self._socket.send_text(answer.model_dump_json())
 
     async def _begin(self, *, again: bool = False) -> None:
         await self._end_tasks()
@@ -103,20 +122,24 @@ class StreamClient:
             await self._socket.send_text(change.model_dump_json())
 
     async def _telemetry(self, wanted: Subscribe, *, again: bool) -> None:
-        frames = FrameMaker(await self._source.samples(), wanted, from_newest=again)
+        source = await self._source.samples()
+        frames = FrameMaker(source, wanted, from_newest=again)
         loop = asyncio.get_running_loop()
         period = 1.0 / wanted.rate_hz
         due = loop.time()
         while True:
+            await source.turns.turn()
             for frame in frames.take():
                 if isinstance(frame, bytes):
                     await self._socket.send_bytes(frame)
                 else:
                     await self._socket.send_text(frame)
             due += period
-            now = loop.time()
-            if due < now:
-                # Sending took longer than the period: the frames in between are not made up for.
-                frames.missed(int((now - due) / period))
-                due = now
-            await asyncio.sleep(max(0.0, due - now))
+            late = loop.time() - due
+            if late > period:
+                # Sending took longer than that: the frames in between are not made up for. The phase is kept: clients
+                # that were all held up by the same thing must not all be due at once from then on.
+                skipped = int(late / period)
+                frames.missed(skipped)
+                due += skipped * period
+            await asyncio.sleep(max(0.0, due - loop.time()))

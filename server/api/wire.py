@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+CLIENT_NAME = r"^[\w.@:+-]{1,64}$"  # of who commands
 Four = tuple[float, float, float, float]
 FrameName = Literal["base", "outer", "middle", "inner"]
 LimitName = Literal["position", "rate", "acceleration"]

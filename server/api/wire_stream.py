@@ -8,11 +8,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from server.api.wire import Problem, Wire
-from server.api.wire_session import SessionOut
+from server.api.wire import CLIENT_NAME, Problem, Wire
+from server.api.wire_session import SessionOut, StateName
 
 Topic = Literal["telemetry", "session"]
 Encoding = Literal["json", "binary"]
+ClientName = Annotated[str, Field(pattern=CLIENT_NAME)]
 
 
 class Subscribe(Wire):
@@ -57,8 +58,15 @@ class Play(Wire):
     type: Literal["play"]
 
 
+class StopNow(Wire):
+    """Live only: the lanes of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; handled at once."""
+
+    type: Literal["stop", "estop"]
+    client: ClientName | None = Field(default=None, description="As the header X-Fullpose-Client, which it replaces")
+
+
 Playback = Seek | Speed | Pause | Play
-StreamIn = Annotated[Subscribe | Ping | Playback, Field(discriminator="type")]
+StreamIn = Annotated[Subscribe | Ping | StopNow | Playback, Field(discriminator="type")]
 
 
 class RecordField(Wire):
@@ -150,6 +158,16 @@ class Pong(Wire):
     server_time: float
 
 
+class Stopped(Wire):
+    """The answer to stop and estop: what the session was and is."""
+
+    type: Literal["stopped"] = "stopped"
+    command: Literal["stop", "estop"]
+    state_before: StateName
+    state_after: StateName
+    revision: int
+
+
 class StreamProblem(Wire):
     """A message of the client that was not understood; the stream goes on."""
 
@@ -157,4 +175,6 @@ class StreamProblem(Wire):
     problem: Problem
 
 
-StreamOut = Annotated[Hello | Telemetry | SessionChanged | Replayed | Pong | StreamProblem, Field(discriminator="type")]
+StreamOut = Annotated[
+    Hello | Telemetry | SessionChanged | Replayed | Pong | Stopped | StreamProblem, Field(discriminator="type")
+]

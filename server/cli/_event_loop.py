@@ -9,6 +9,7 @@ import threading
 from collections.abc import Awaitable, Callable, Iterator
 
 import uvicorn
+import uvloop
 
 from server.app import create_app
 from server.cli._exit import CommandError, fail
@@ -19,12 +20,17 @@ from server.store.errors import StoreError
 
 Ready = Callable[[str], Awaitable[None]]
 WARM_AFTER_S = 0.5
+# How long a thread that computes (reading an upload) may keep the interpreter from the event loop, at every single
+# send. Python's own 5 ms are half of what an E-stop may take.
+SWITCH_S = 0.0005
 
 
 def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
     """Serve on `listener` until SIGINT or SIGTERM; the address is the first line of stdout."""
+    sys.setswitchinterval(SWITCH_S)
     try:
-        asyncio.run(_run(settings, listener, url, ready))
+        with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
+            runner.run(_run(settings, listener, url, ready))
     except StoreError as error:
         fail(str(error))
     except (HostError, CommandError) as error:

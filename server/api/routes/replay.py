@@ -6,12 +6,13 @@ It plays from the first subscription on, unless the client has said pause before
 import asyncio
 import secrets
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable
 from typing import Any
 
 from fastapi import APIRouter, WebSocket
 
-from server.api.frames import SampleSource, record
+from server.api.frame_source import FrameSource
+from server.api.frames import record
 from server.api.playback import PlaybackError, RunPlayback
 from server.api.problems import ApiError
 from server.api.services import ServicesDep
@@ -19,7 +20,7 @@ from server.api.session_view import replayed_session
 from server.api.stream_client import StreamClient
 from server.api.wire import Wire
 from server.api.wire_session import SessionOut
-from server.api.wire_stream import Hello, Playback, Replayed, ReplayOf, SessionChanged
+from server.api.wire_stream import Hello, Playback, Replayed, ReplayOf, SessionChanged, StopNow
 from server.runtime.replay import RecordError
 from server.runtime.telemetry import SAMPLE
 from server.store.errors import FileError
@@ -75,9 +76,9 @@ class _Run:
         rows = self._playback.latest()
         return None if rows is None else rows[0]
 
-    async def samples(self) -> SampleSource:
+    async def samples(self) -> FrameSource:
         self._begin()
-        return self._playback
+        return FrameSource(self._playback, fresh_s=0.0)
 
     async def changes(self) -> AsyncIterator[Wire]:
         self._begin()
@@ -110,6 +111,9 @@ class _Run:
         except PlaybackError as error:
             raise ApiError(422, "validation", str(error)) from None
         return self._status()
+
+    def stop(self, message: StopNow) -> Awaitable[Wire]:
+        raise ApiError(422, "not-a-rig", f"{message.type}: a record cannot be stopped")
 
     def _begin(self) -> None:
         if not self._begun:

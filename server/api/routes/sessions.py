@@ -1,10 +1,11 @@
 """Sessions: the snapshot, commands, the lease, stop and E-stop on lanes of their own, alarms."""
 
 import asyncio
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Body
 
+from server.api.commanding import answer, audit, lane, refusal
 from server.api.problems import ApiError
 from server.api.services import Services, ServicesDep, WhoDep
 from server.api.session_view import lease_out, session_out
@@ -19,8 +20,6 @@ REFUSED: dict[int | str, dict[str, Any]] = {
     409: {"description": "The session refuses; nothing has changed. Names state, command and what is allowed"},
     503: {"description": "The rig process does not answer"},
 }
-# Codes of the session's refusals that are not about its state.
-_STATUS = {"lease_needed": 403, "lease_lost": 403, "rig_unreachable": 503}
 
 
 @router.get("/session")
@@ -48,8 +47,8 @@ async def command(rig: str, body: Annotated[CommandIn, Body()], services: Servic
         args = await _load_args(services, rig, body.args.plan)
     token = None if body.lease is None else Token(body.lease.epoch, body.lease.sequence)
     reply = await host.command(body.command, args, who, token)
-    await _audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
-    return _answer(body.command, reply)
+    await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    return answer(body.command, reply)
 
 
 @router.post("/stop", responses=REFUSED)
@@ -77,21 +76,10 @@ async def release_lease(rig: str, services: ServicesDep, who: WhoDep) -> LeaseOu
     return await _lease(services, await _host(services, rig), "release", who, None)
 
 
-async def _lane(services: Services, rig: str, word: str, who: str) -> CommandOut:
-    host = services.hosts.get(rig)  # nothing to wait for comes before it
-    if host is None:
+async def _lane(services: Services, rig: str, word: Literal["stop", "estop"], who: str) -> CommandOut:
+    if services.hosts.get(rig) is None:  # otherwise nothing is waited for before the flag is set
         await _known(services, rig)
-        raise ApiError(
-            409,
-            "illegal-command",
-            f"{word} is not possible: no rig process runs",
-            state="disconnected",
-            command=word,
-            allowed=["connect"],
-        )
-    reply = await host.command(word, {}, who, None)
-    await _audit(services, rig, who, word, {}, None, reply)
-    return _answer(word, reply)
+    return await lane(services, rig, word, who)
 
 
 async def _lease(services: Services, host: RigHost, action: str, who: str, to: str | None) -> LeaseOut:
@@ -99,12 +87,12 @@ async def _lease(services: Services, host: RigHost, action: str, who: str, to: s
     try:
         held = await host.lease(action, who, to)
     except RefusedError as refused:
-        await _audit(services, host.name, who, f"lease {action}", {}, None, refused.reply)
-        raise _refusal(refused.reply) from None
+        await audit(services, host.name, who, f"lease {action}", {}, None, refused.reply)
+        raise refusal(refused.reply) from None
     if action != "renew":  # every few seconds; it says nothing that the next command does not
         reply = Reply(ok=True, state_before=before, state_after=host.snapshot().state, revision=host.revision)
         token = LeaseToken(epoch=held.epoch, sequence=held.sequence)
-        await _audit(services, host.name, who, f"lease {action}", {} if to is None else {"to": to}, token, reply)
+        await audit(services, host.name, who, f"lease {action}", {} if to is None else {"to": to}, token, reply)
     return lease_out(held)
 
 
@@ -132,52 +120,3 @@ async def _load_args(services: Services, rig: str, plan: str) -> dict[str, Any]:
     if why is not None:
         raise ApiError(409, "not-flyable", why, state=services.hosts.state(rig), command="load")
     return {"plan_folder": str(services.plans.folder(plan).resolve())}
-
-
-def _answer(word: str, reply: Reply) -> CommandOut:
-    if not reply.ok:
-        raise _refusal(reply)
-    return CommandOut.model_validate(
-        {
-            "command": word,
-            "state_before": reply.state_before,
-            "state_after": reply.state_after,
-            "revision": reply.revision,
-        }
-    )
-
-
-def _refusal(reply: Reply) -> ApiError:
-    error = reply.error
-    if error is None:
-        return ApiError(503, "rig-unreachable", "the rig process refused without a reason")
-    return ApiError(
-        _STATUS.get(error.code, 409),
-        error.code.replace("_", "-"),
-        error.message,
-        state=error.state,
-        command=error.command,
-        allowed=error.allowed,
-    )
-
-
-async def _audit(
-    services: Services,
-    rig: str,
-    who: str,
-    word: str,
-    args: dict[str, Any],
-    token: LeaseToken | None,
-    reply: Reply,
-) -> None:
-    await asyncio.to_thread(
-        services.audit.write,
-        who=who,
-        rig=rig,
-        command=word,
-        args=args,
-        lease=None if token is None else (token.epoch, token.sequence),
-        states=(reply.state_before, reply.state_after),
-        accepted=reply.ok,
-        detail=None if reply.error is None else f"{reply.error.code}: {reply.error.message}",
-    )

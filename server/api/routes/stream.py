@@ -2,34 +2,37 @@
 
 import asyncio
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable
 
 from fastapi import APIRouter, WebSocket
 
-from server.api.frames import SampleSource, record
+from server.api.commanding import lane
+from server.api.frame_source import FrameSource
+from server.api.frames import record
 from server.api.problems import ApiError
-from server.api.services import Services, ServicesDep
+from server.api.services import Services, ServicesDep, WhoDep
 from server.api.session_view import session_out
 from server.api.stream_client import StreamClient
 from server.api.wire import Wire
 from server.api.wire_session import SessionOut
-from server.api.wire_stream import Hello, Playback, SessionChanged
+from server.api.wire_stream import Hello, Playback, SessionChanged, StopNow, Stopped
 from server.runtime.telemetry import SAMPLE
 
 router = APIRouter(tags=["stream"])
 
 
 @router.websocket("/rigs/{rig}/stream")
-async def stream(rig: str, socket: WebSocket, services: ServicesDep) -> None:
+async def stream(rig: str, socket: WebSocket, services: ServicesDep, who: WhoDep) -> None:
     """hello, then what the client subscribes to."""
     await asyncio.to_thread(services.rigs.get, rig)
     await socket.accept()
-    await StreamClient(socket, _Rig(rig, services)).run()
+    await StreamClient(socket, _Rig(rig, services, who)).run()
 
 
 class _Rig:
-    def __init__(self, rig: str, services: Services) -> None:
+    def __init__(self, rig: str, services: Services, who: str) -> None:
         self._rig = rig
+        self._who = who
         self._services = services
 
     def hello(self) -> Hello:
@@ -41,8 +44,9 @@ class _Rig:
             record=record(),
         )
 
-    async def samples(self) -> SampleSource:
-        return await self._services.hosts.wait(self._rig)
+    async def samples(self) -> FrameSource:
+        host = await self._services.hosts.wait(self._rig)
+        return self._services.frames.setdefault(self._rig, FrameSource(host))
 
     async def changes(self) -> AsyncIterator[Wire]:
         host = await self._services.hosts.wait(self._rig)
@@ -53,6 +57,14 @@ class _Rig:
 
     def control(self, message: Playback) -> Wire:
         raise ApiError(422, "not-a-replay", f"{message.type}: a rig as it lives can only be watched")
+
+    def stop(self, message: StopNow) -> Awaitable[Wire]:
+        done = lane(self._services, self._rig, message.type, message.client or self._who)
+
+        async def answered() -> Wire:
+            return Stopped.model_validate((await done).model_dump())
+
+        return answered()
 
     def _session(self) -> SessionOut:
         return session_out(self._services.hosts, self._rig, self._services.settings.rig_rate_hz)

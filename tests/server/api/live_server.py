@@ -92,7 +92,7 @@ class Operator:
     def to_idle(self) -> None:
         """Bring the session to idle from wherever an earlier test left it."""
         self.take()
-        for _ in range(10):
+        for _ in range(100):
             state = self.session()["state"]
             match state:
                 case "idle":
@@ -111,6 +111,7 @@ class Operator:
                     self.wait("armed", "faulted", "estopped")
                     continue
             if not answer.is_success:
+                time.sleep(0.1)  # not at rest yet
                 self.wait("idle", "ready", "disconnected", "armed", "estopped", "faulted")
         raise AssertionError(f"no way to idle from {self.session()['state']}")
 

@@ -166,11 +166,12 @@ def test_the_stream_of_a_rig_without_a_process_waits_for_it(server: LiveServer) 
 
 @pytest.mark.parametrize("word", ["stop", "estop"])
 def test_stop_and_estop_over_the_stream_need_no_lease(operator: Operator, server: LiveServer, word: str) -> None:
-    operator.command("load", plan=server.plan()["id"])
+    long = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 10},0,0,0\n" for k in range(300))
+    operator.command("load", plan=server.plan(text=long)["id"])
     operator.command("arm")
-    operator.command("start")
-    operator.wait("running")
     with server.stream() as stream:
+        operator.command("start")
+        operator.wait("running")
         stream.send(json.dumps({"type": word, "client": "a-passer-by"}))
         stopped = received(stream, "stopped")
         assert (stopped["command"], stopped["state_before"]) == (word, "running")
