@@ -11,6 +11,7 @@ import os
 import socket
 import threading
 import time
+from collections.abc import Coroutine
 from dataclasses import replace
 from typing import Any
 
@@ -105,6 +106,7 @@ class RigHost:
             await asyncio.sleep(0.05)
             if time.monotonic() > deadline:
                 raise HostError(f"rig process {self._pid} of {self.name} does not end")
+        await self._launcher.reaped(self._pid)
 
     # --- commands ---
 
@@ -113,12 +115,9 @@ class RigHost:
 
         E-stop and stop take their own lane here too, so that they never queue behind another command.
         """
-        if command == Command.STOP:
-            return await self.stop(who)
+        if command in (Command.STOP, Command.ESTOP):
+            return await self.lane(Command(command), who)
         before = self._state()
-        if command == Command.ESTOP:
-            self.estop(who)
-            return await self._lane_done("estop_done_ns", before, command, legal=True)
         return (await self._ask(before, command, "command", who, command=command, args=args, lease=lease)).reply
 
     async def lease(self, action: str, who: str, to: str | None = None) -> Lease:
@@ -134,10 +133,13 @@ class RigHost:
 
     async def stop(self, who: str) -> wire.Reply:
         """Stop inside the limits, by the flag lane; needs no lease."""
-        before = self._state()
-        legal = Command.STOP in allowed(State(before))
-        self._flag("stop", who)
-        return await self._lane_done("stop_done_ns", before, Command.STOP, legal=legal)
+        return await self.lane(Command.STOP, who)
+
+    def lane(self, command: Command, who: str) -> Coroutine[Any, Any, wire.Reply]:
+        """E-stop or stop by its flag, now; the coroutine, which is to be awaited, only waits for the loop's answer."""
+        before = self._memory().snapshot()
+        asked = self._flag(command, who)  # before anything else is looked at
+        return self._lane_done(command, asked, before)
 
     # --- what it shows ---
 
@@ -293,23 +295,25 @@ class RigHost:
 
     # --- inside: requests ---
 
-    def _flag(self, lane: str, who: str) -> None:
+    def _flag(self, lane: str, who: str) -> int:
         header = self._memory().header
         header[f"{lane}_who"] = who.encode()[:63]
-        header[f"{lane}_request_ns"] = time.monotonic_ns()
+        asked = time.monotonic_ns()
+        header[f"{lane}_request_ns"] = asked
+        return asked
 
-    async def _lane_done(self, field: str, before: str, command: str, *, legal: bool) -> wire.Reply:
+    async def _lane_done(self, command: Command, asked: int, published: bytes | None) -> wire.Reply:
         header = self._memory().header
-        asked = int(header[field.replace("done", "request")][0])
+        before = State.DISCONNECTED.value if self._dead or published is None else wire.decode_published(published).state
         deadline = time.monotonic() + REPLY_S
-        while int(header[field][0]) < asked:
+        while int(header[f"{command}_done_ns"][0]) < asked:
             if self._dead or time.monotonic() > deadline:
                 return self._unreachable(
                     before, command, "the rig process does not answer; the drive's watchdog brakes"
                 )
             await asyncio.sleep(0.001)
         after = self._state()
-        if legal:
+        if command in (Command.ESTOP, *allowed(State(before))):
             return wire.Reply(True, before, after, self.revision)
         can = [str(c) for c in allowed(State(before))]
         message = f"{command} is not possible while {before}; allowed now: {', '.join(can)}"
