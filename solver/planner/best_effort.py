@@ -93,8 +93,8 @@ def least_error(
     for stretch in stretches:
         part = slice(*stretch.range(time))
         x[part], limited[part], _ = freed[part.start, part.stop]
-    over = worst(time, x, limits)[0]
-    return BestEffort(x, limited, over) if over <= MET else again()
+    left = worst(time, x, limits)[0]
+    return BestEffort(x, limited, left) if left <= MET else again()
 
 
 def feasible(time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None) -> Array:
