@@ -93,8 +93,8 @@ def least_error(
     for stretch in stretches:
         part = slice(*stretch.range(time))
         x[part], limited[part], _ = freed[part.start, part.stop]
-    left = worst(time, x, limits)[0]
-    return BestEffort(x, limited, left) if left <= MET else again()
+    excess = worst(time, x, limits)[0]
+    return BestEffort(x, limited, excess) if excess <= MET else again()
 
 
 def feasible(time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None) -> Array:
