@@ -21,6 +21,7 @@ from server.api.routes import (
     audit,
     compare,
     health,
+    live,
     plans,
     replay,
     rigs,
@@ -34,7 +35,7 @@ from server.api.routes import (
 from server.api.run_files import RunFiles
 from server.api.services import Services
 from server.plan_folder import rig_hash
-from server.runtime.config import RigConfig
+from server.runtime.config import GuardConfig, LiveConfig, RigConfig, Tolerance
 from server.scene.errors import PayloadMeshError, SceneError
 from server.scene.on_demand import ScenesOnDemand
 from server.scene.proxy import router as scene_router
@@ -52,6 +53,7 @@ from server.store.trajectories import TrajectoryStore
 from server.version import VERSION
 
 API = "/api/v1"
+ROUTES = (rigs, trajectories, plans, compare, sessions, scene, stream, live, replay, solve, runs, audit, health)
 DESCRIPTION = (
     "Flies attitude trajectories on four-axis flight motion simulators. Degrees and seconds; frames in the order base, "
     "outer, middle, inner; quaternions w, x, y, z from reference (north, up, east) to body (nose, up, right wing)."
@@ -82,7 +84,21 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.scenes = SceneServer()
     problems.install(app)
     app.add_exception_handler(SceneError, _scene_problem)
-    for module in (rigs, trajectories, plans, compare, sessions, scene, stream, replay, solve, runs, audit, health):
+    for module in (
+        rigs,
+        trajectories,
+        plans,
+        compare,
+        sessions,
+        scene,
+        stream,
+        live,
+        replay,
+        solve,
+        runs,
+        audit,
+        health,
+    ):
         app.include_router(module.router, prefix=API)
     app.include_router(scene_router, dependencies=[Depends(_scene)])
     app.mount("/", console())
@@ -135,7 +151,22 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         return None if rows is None else rows[0]
 
     def config(rig: str) -> RigConfig:
-        return RigConfig(rig, rig_store.get(rig).rig, directory(rig), run_folder, rate_hz=settings.rig_rate_hz)
+        bridged_ms = settings.live_extrapolate_ms  # the guard warns before, and trips where the source is not let go
+        return RigConfig(
+            rig,
+            rig_store.get(rig).rig,
+            directory(rig),
+            run_folder,
+            rate_hz=settings.rig_rate_hz,
+            guard=GuardConfig(
+                stale_ms=Tolerance(0.4 * settings.live_extrapolate_ms, 2.0 * settings.live_extrapolate_ms)
+            ),
+            live=LiveConfig(
+                udp_port=settings.live_udp_ports.get(rig),
+                delay_ms=settings.live_delay_ms,
+                extrapolate_ms=bridged_ms,
+            ),
+        )
 
     def request(plan: str) -> PlanRequest:
         row = plan_store.get(plan)

@@ -132,6 +132,28 @@ class Client:
         except (ConnectionClosed, InvalidHandshake, OSError) as error:
             raise ClientError(f"the stream of {rig} at {self.url} broke off: {error}") from error
 
+    @asynccontextmanager
+    async def live(self, rig: str, *, load: bool = True, **settings: Any) -> AsyncIterator[ClientConnection]:
+        """The rig's live source: opened, and with `load` loaded under the lease (`method`, `options`, `convention`).
+
+        Send samples, receive replies (docs/guide/live.md). The rig stops where the connection ends while it is live.
+        """
+        message: dict[str, Any] = {"type": "open"} | settings
+        if load:
+            self._sequence += 1
+            message["lease"] = {"epoch": self._epoch, "sequence": self._sequence}
+        url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/live"
+        name = {"X-Fullpose-Client": self.name}
+        try:
+            async with connect(url, proxy=None, additional_headers=name, compression=None) as socket:
+                await socket.send(json.dumps(message))
+                opened = json.loads(await socket.recv())
+                if opened["type"] != "opened":
+                    raise ClientError(opened["problem"]["detail"], opened["problem"]["status"], opened["problem"])
+                yield socket
+        except (ConnectionClosed, InvalidHandshake, OSError) as error:
+            raise ClientError(f"the live source of {rig} at {self.url} broke off: {error}") from error
+
     async def _object(self, method: str, path: str, **content: Any) -> dict[str, Any]:
         answer: dict[str, Any] = await self._call(method, path, **content)
         return answer

@@ -28,6 +28,11 @@ class Settings(BaseSettings):
     max_upload_bytes: int = Field(default=512 * 1024 * 1024, gt=0)
     max_solve_samples: int = Field(default=1_000_000, gt=0)
     rig_rate_hz: float = Field(default=1000.0, gt=0.0, le=10_000.0)
+    live_udp_ports: dict[str, int] = {}  # rig name to the port where its live source is heard, on loopback
+    live_delay_ms: float = Field(
+        default=5.0, ge=0.0, le=1000.0
+    )  # flown that much late: jitter up to it is interpolated
+    live_extrapolate_ms: float = Field(default=50.0, gt=0.0, le=2000.0)  # bridged; then the source is lost
     stop_rigs_on_exit: bool = True  # at an orderly end; a server that is killed leaves its rigs to be adopted again
 
     @property

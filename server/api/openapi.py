@@ -8,6 +8,7 @@ from pydantic.json_schema import models_json_schema
 
 from server.api.problems import MEDIA_TYPE
 from server.api.wire import Problem
+from server.api.wire_live import LiveOpened, LiveProblem, LiveReplyOut, LiveSampleIn, OpenLive
 from server.api.wire_solve import Opened, OpenSolve, Solved, SolveProblem, SolveSamples
 from server.api.wire_stream import (
     Hello,
@@ -25,8 +26,18 @@ from server.api.wire_stream import (
 )
 from server.api.wire_trajectories import TrajectoryIn
 
-MESSAGES = (Subscribe, Ping, Seek, Speed, Pause, Play, OpenSolve, SolveSamples, TrajectoryIn)
-ANSWERS = (Problem, Hello, Telemetry, SessionChanged, Replayed, Pong, StreamProblem, Opened, Solved, SolveProblem)
+MESSAGES = (
+    *(Subscribe, Ping, Seek, Speed, Pause, Play),
+    *(OpenSolve, SolveSamples),
+    *(OpenLive, LiveSampleIn),
+    TrajectoryIn,
+)
+ANSWERS = (
+    Problem,
+    *(Hello, Telemetry, SessionChanged, Replayed, Pong, StreamProblem),
+    *(Opened, Solved, SolveProblem),
+    *(LiveOpened, LiveReplyOut, LiveProblem),
+)
 
 
 def contract(app: FastAPI) -> dict[str, Any]:

@@ -54,6 +54,7 @@ class Services:
     runs: RunFiles
     scenes: Scenes
     frames: dict[str, FrameSource] = field(default_factory=dict)
+    live_sources: set[str] = field(default_factory=set)  # rigs that have one connected
     started: float = field(default_factory=time.time)
 
 

@@ -1,10 +1,11 @@
 """The session on the wire: commands as a tagged union, the lease, the snapshot."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from server.api.wire import Four, FrameName, Wire
+from server.api.wire_plans import OptionValue
 
 StateName = Literal[
     "disconnected",
@@ -33,8 +34,25 @@ class NoArgs(Wire):
     """A command without arguments."""
 
 
+class LiveLoad(Wire):
+    """How a live source is flown: a step method that keeps the limits, and its options."""
+
+    method: str = "exact"
+    options: dict[str, OptionValue] = Field(default={})
+    first_sample_s: float = Field(default=5.0, gt=0.0, le=60.0, description="How long go_live waits for the source")
+
+
 class LoadArgs(Wire):
-    plan: str = Field(description="Id of a flyable plan of this rig")
+    """A plan, or a live source."""
+
+    plan: str | None = Field(default=None, description="Id of a flyable plan of this rig")
+    live: LiveLoad | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if (self.plan is None) == (self.live is None):
+            raise ValueError("expected one of plan and live")
+        return self
 
 
 class ArmArgs(Wire):

@@ -13,6 +13,8 @@ SAID = {
     "fourth_axis.py": ["vertical-3: fastest frame 2", "vertical-4: fastest frame"],
 }
 
+NEED_A_SERVER = {"live_jsbsim.py", "udp_client.py"}  # test_live_scripts.py
+
 
 def run(script: str, *arguments: str) -> str:
     """The script's output, run as a person would from the repository's root."""
@@ -30,7 +32,7 @@ def run(script: str, *arguments: str) -> str:
 
 
 def test_every_script_is_known_here() -> None:
-    assert {path.name for path in (ROOT / "examples").glob("*.py")} == set(SAID)
+    assert {path.name for path in (ROOT / "examples").glob("*.py")} == set(SAID) | NEED_A_SERVER
 
 
 @pytest.mark.parametrize("script", SAID)

@@ -9,7 +9,17 @@ from server.api.commanding import answer, audit, lane, refusal
 from server.api.problems import ApiError
 from server.api.services import Services, ServicesDep, WhoDep
 from server.api.session_view import lease_out, session_out
-from server.api.wire_session import AlarmOut, CommandIn, CommandOut, LeaseIn, LeaseOut, LeaseToken, Load, SessionOut
+from server.api.wire_session import (
+    AlarmOut,
+    CommandIn,
+    CommandOut,
+    LeaseIn,
+    LeaseOut,
+    LeaseToken,
+    Load,
+    LoadArgs,
+    SessionOut,
+)
 from server.runtime.host import HostError, RefusedError, RigHost
 from server.runtime.wire import Reply
 from server.session.lease import LeaseToken as Token
@@ -44,7 +54,7 @@ async def command(rig: str, body: Annotated[CommandIn, Body()], services: Servic
     host = await _host(services, rig)
     args: dict[str, Any] = body.args.model_dump(exclude_none=True)
     if isinstance(body, Load):
-        args = await _load_args(services, rig, body.args.plan)
+        args = await _load_args(services, rig, body.args)
     token = None if body.lease is None else Token(body.lease.epoch, body.lease.sequence)
     reply = await host.command(body.command, args, who, token)
     await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
@@ -107,7 +117,10 @@ async def _host(services: Services, rig: str) -> RigHost:
         raise ApiError(503, "rig-process", str(error)) from None
 
 
-async def _load_args(services: Services, rig: str, plan: str) -> dict[str, Any]:
+async def _load_args(services: Services, rig: str, args: LoadArgs) -> dict[str, Any]:
+    if args.live is not None:
+        return {"live": args.live.model_dump()}
+    plan = args.plan or ""
     row = await asyncio.to_thread(services.plans.get, plan)
     result = row.result or {}
     why = None
