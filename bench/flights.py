@@ -230,7 +230,8 @@ def limits_text() -> str:
 HEAD = """# Flights flown, by method
 
 Written by `{command}` on {machine}.
-A flight counts as flown when every sample is exact (1e-9 deg) and the independent check finds no limit exceeded. Random flights through all attitudes, 20 s at 500 Hz; the columns are rig and body
+A flight counts as flown when every sample is exact (1e-9 deg) and the independent check finds no limit exceeded.
+Random flights through all attitudes, 20 s at 500 Hz; the columns are rig and body
 rate in deg/s. The previews were simulated on the first seeds of each column only.
 
 {limits}

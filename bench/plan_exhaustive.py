@@ -1,4 +1,4 @@
-"""The planner against a search over all pairs of nodes, on the rig with every range cut: python -m bench.plan_exhaustive
+"""The planner against a search over all pairs of nodes, every range cut: python -m bench.plan_exhaustive
 
 No windows, no turn bookkeeping: every node is repeated for every turn its ranges hold, and every pair of neighbouring
 stages is tried under the rate limits. A flight with a chain that `plan` does not fly would be a miss.
@@ -65,7 +65,8 @@ def main(seeds: int) -> None:
             counts[chain_exists(t[stages], C[stages], rig), flown] += 1
         print(
             f"{rate:4.0f} deg/s, {seeds} flights: chain and flown {counts[True, True]}, chain but not flown "
-            f"{counts[True, False]}, no chain on this grid but flown {counts[False, True]}, neither {counts[False, False]}",
+            f"{counts[True, False]}, no chain on this grid but flown {counts[False, True]}, "
+            f"neither {counts[False, False]}",
             flush=True,
         )
 
