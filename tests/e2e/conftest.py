@@ -5,15 +5,20 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import httpx
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, sync_playwright
 
 ROOT = Path(__file__).parents[2]
-FLIGHT = ROOT / "examples" / "flights" / "loop.csv"
+FLIGHTS = ROOT / "examples" / "flights"
+FLIGHT = FLIGHTS / "loop.csv"
+DESK: ViewportSize = {"width": 1440, "height": 900}
 # Software rendering for WebGL; 2D canvases without it, where it is many times slower than the processor itself.
 CHROMIUM_ARGS = [
     "--no-sandbox",
@@ -33,6 +38,46 @@ class Server:
 
     url: str
     pid: int
+
+
+class Pages:
+    """Browser windows of one test, each of a profile of its own, and what went wrong in them."""
+
+    def __init__(self, browser: Browser, server: Server) -> None:
+        self._browser = browser
+        self._server = server
+        self._contexts: list[BrowserContext] = []
+        self.wrong: list[str] = []
+
+    def open(self, *, viewport: ViewportSize = DESK, touch: bool = False, scene: bool = False) -> Page:
+        """A page of a fresh profile. Scenes are drawn only where asked for: software rendering takes a core each."""
+        context = self._browser.new_context(
+            base_url=self._server.url, viewport=viewport, has_touch=touch, color_scheme="dark"
+        )
+        self._contexts.append(context)
+        page = context.new_page()
+        if not scene:
+            page.route("**/scene/*/", lambda route: route.fulfill(body="<!doctype html>", content_type="text/html"))
+        page.on("pageerror", lambda error: self.wrong.append(f"script: {error}"))
+        page.on("request", lambda sent: None if self._ours(sent.url) else self.wrong.append(f"request: {sent.url}"))
+        return page
+
+    def close(self) -> None:
+        """Close them all."""
+        for context in self._contexts:
+            context.close()
+
+    def _ours(self, url: str) -> bool:
+        return url.startswith((f"{self._server.url}/", "data:", "blob:"))
+
+
+@dataclass(frozen=True)
+class Stock:
+    """What is on the server before a test begins: a flight, a plan of it that is not feasible, a comparison."""
+
+    flight: str
+    plan: dict[str, Any]
+    comparison: dict[str, Any]
 
 
 @pytest.fixture(scope="session")
@@ -77,22 +122,32 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture
-def context(browser: Browser, server: Server) -> Iterator[BrowserContext]:
-    """A fresh browser profile, on a desk's screen, in the dark theme."""
-    made = browser.new_context(base_url=server.url, viewport={"width": 1440, "height": 900}, color_scheme="dark")
-    yield made
-    made.close()
+def pages(browser: Browser, server: Server) -> Iterator[Pages]:
+    """Opens pages that fail the test where a script fails or where anything is asked of another host."""
+    opener = Pages(browser, server)
+    yield opener
+    opener.close()
+    assert opener.wrong == []
 
 
 @pytest.fixture
-def page(context: BrowserContext, server: Server) -> Iterator[Page]:
-    """A page that fails the test where a script fails or where anything is asked of another host."""
-    wrong: list[str] = []
-    opened = context.new_page()
-    opened.on("pageerror", lambda error: wrong.append(f"script: {error}"))
-    opened.on("request", lambda sent: None if _ours(sent.url, server.url) else wrong.append(f"request: {sent.url}"))
-    yield opened
-    assert wrong == []
+def page(pages: Pages) -> Page:
+    """A page on a desk's screen, in the dark theme, without the scene."""
+    return pages.open()
+
+
+@pytest.fixture(scope="session")
+def stocked(server: Server) -> Stock:
+    """A flight on the server, planned in vain by `exact` for a rig too narrow for it, and compared there."""
+    with httpx.Client(base_url=f"{server.url}/api/v1", timeout=60.0) as client:
+        with (FLIGHTS / "slow_roll.csv").open("rb") as file:
+            form = {"name": "Slow roll", "convention": "ned"}
+            flight = client.post("/trajectories", data=form, files={"file": file}).raise_for_status().json()["sha256"]
+        wanted = {"trajectory": flight, "rig": "vertical-limited"}
+        plan = client.post("/plans", json={**wanted, "method": "exact"}).raise_for_status().json()
+        methods = ["exact", "plan", "three_axis"]
+        comparison = client.post("/compare", json={**wanted, "methods": methods}).raise_for_status().json()
+        return Stock(flight, _done(client, f"/plans/{plan['id']}"), _done(client, f"/compare/{comparison['id']}"))
 
 
 @pytest.fixture
@@ -103,5 +158,11 @@ def shots(tmp_path: Path) -> Path:
     return folder
 
 
-def _ours(url: str, server: str) -> bool:
-    return url.startswith((f"{server}/", "data:", "blob:"))
+def _done(client: httpx.Client, path: str) -> dict[str, Any]:
+    """A job's answer, once it has ended."""
+    end = time.monotonic() + 300.0
+    while (job := client.get(path).raise_for_status().json())["status"] in ("queued", "running"):
+        assert time.monotonic() < end, f"{path} does not end"
+        time.sleep(0.1)
+    assert job["status"] == "done", job["error"]
+    return dict(job)

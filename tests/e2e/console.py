@@ -83,6 +83,20 @@ class Console:
         """The solve or tracking error as the page got it [deg]."""
         return float(self.page.get_by_test_id(f"{kind}-error").get_attribute("data-value") or "nan")
 
+    def rates(self) -> list[float]:
+        """The four measured rates that the page shows [deg/s]."""
+        shown = [self.page.get_by_test_id(f"rate-{name}").inner_text() for name in FRAMES]
+        return [float(text.replace("−", "-")) for text in shown]
+
+    def put_scene_away(self) -> None:
+        """Software rendering takes a core: what was looked at is put away."""
+        self.page.get_by_role("button", name="Show the scene").click()
+        expect(self.page.locator("iframe")).to_be_hidden()
+
+    def at_rest(self) -> None:
+        """Wait until no frame turns."""
+        self.until(lambda: max(map(abs, self.rates())) < 0.05, 20.0)
+
     def until(self, condition: Callable[[], bool], within_s: float) -> None:
         """Wait for something the page shows."""
         end = time.monotonic() + within_s

@@ -2,20 +2,26 @@
 
 import re
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 import pytest
-from playwright.sync_api import Browser, Page, ViewportSize, expect
+from playwright.sync_api import Page, ViewportSize, expect
 
-from tests.e2e.conftest import FLIGHT, Server
-from tests.e2e.console import Console
+from tests.e2e.conftest import Pages, Stock
+from tests.e2e.console import SOON_MS
 
 pytestmark = pytest.mark.browser
 
 Theme = Literal["dark", "light"]
-DESK: ViewportSize = {"width": 1440, "height": 900}
 TABLET: ViewportSize = {"width": 1024, "height": 768}
-PAGES = {"operate": "Operate", "trajectories": "Flights", "plans": "Plans", "runs": "Runs", "rigs": "Rigs"}
+PAGES = {
+    "operate": "Operate",
+    "trajectories": "Flights",
+    "plans": "Plans",
+    "compare": "Compare",
+    "runs": "Runs",
+    "rigs": "Rigs",
+}
 
 # Every visible text against what lies behind it, by WCAG 2's formula; 4.5:1, or 3:1 for large text.
 LOW_CONTRAST = """() => {
@@ -52,50 +58,51 @@ LOW_CONTRAST = """() => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def planned(browser: Browser, server: Server) -> str:
-    """A server with a flight and a plan in it; the rig's name."""
-    with browser.new_context(base_url=server.url) as context:
-        console = Console(context.new_page(), "horizontal-4")
-        console.open()
-        console.upload(FLIGHT, "ned")
-        console.solve("exact")
-    return console.rig
-
-
-def visit(page: Page, name: str, rig: str) -> None:
-    """Open a page by its link, and wait until it has drawn."""
-    page.goto(f"/operate/{rig}")
-    page.get_by_role("navigation").get_by_role("link", name=PAGES[name]).click()
+def visit(page: Page, name: str) -> None:
+    """Go to a page by its link, and wait until it has drawn what it shows."""
+    page.get_by_role("navigation", name="Pages").get_by_role("link", name=PAGES[name]).click()
     if name == "operate":
         expect(page.get_by_role("toolbar", name="Commands")).to_be_visible()
     else:
         expect(page.get_by_role("heading", name=PAGES[name], exact=True)).to_be_visible()
-    page.wait_for_timeout(700)
+    if name in ("operate", "trajectories", "plans"):
+        expect(page.locator(".uplot canvas").first).to_be_visible(timeout=SOON_MS)
+    if name == "compare":
+        expect(page.locator("[data-method=exact]")).to_be_visible(timeout=SOON_MS)
+    if name == "runs":
+        expect(page.get_by_text("Reading the records")).to_be_hidden(timeout=SOON_MS)
 
 
-@pytest.mark.parametrize("theme", ["dark", "light"])
-@pytest.mark.parametrize("name", PAGES)
-def test_text_can_be_read(browser: Browser, server: Server, planned: str, name: str, theme: Theme, shots: Path) -> None:
-    with browser.new_context(
-        base_url=server.url,
-        viewport={"width": 1440, "height": 900},
-        color_scheme="dark" if theme == "dark" else "light",
-    ) as context:
-        page = context.new_page()
-        visit(page, name, planned)
-        assert page.locator("html").get_attribute("data-theme") == theme
-        page.screenshot(path=shots / f"{name}-{theme}.png")
-        assert page.evaluate(LOW_CONTRAST) == []
+def opened(pages: Pages, viewport: ViewportSize | None = None) -> Page:
+    """The console, with a stocked server behind it."""
+    page = pages.open(viewport=viewport, touch=True) if viewport else pages.open()
+    page.goto("/operate/horizontal-4")
+    expect(page.get_by_test_id("state")).to_have_attribute("data-state", re.compile(r"\w+"), timeout=SOON_MS)
+    return page
 
 
-@pytest.mark.parametrize("name", PAGES)
-def test_tablet_holds_every_page(browser: Browser, server: Server, planned: str, name: str, shots: Path) -> None:
-    with browser.new_context(base_url=server.url, viewport=TABLET, has_touch=True, color_scheme="light") as context:
-        page = context.new_page()
-        visit(page, name, planned)
+def test_text_can_be_read_in_both_themes(pages: Pages, stocked: Stock, shots: Path) -> None:
+    page = opened(pages)
+    low = {}
+    for name in PAGES:
+        visit(page, name)
+        for theme in get_args(Theme):
+            page.emulate_media(color_scheme=theme)
+            expect(page.locator("html")).to_have_attribute("data-theme", theme)
+            # A colour on its way from one theme to the other is neither's.
+            page.evaluate("Promise.all(document.getAnimations().map((each) => each.finished.catch(() => null)))")
+            low[name, theme] = page.evaluate(LOW_CONTRAST)
+            page.screenshot(path=shots / f"{name}-{theme}.png")
+    assert {where: found for where, found in low.items() if found} == {}
+
+
+def test_tablet_holds_every_page(pages: Pages, stocked: Stock, shots: Path) -> None:
+    page = opened(pages, TABLET)
+    page.emulate_media(color_scheme="light")
+    for name in PAGES:
+        visit(page, name)
         page.screenshot(path=shots / f"{name}-tablet.png")
-        assert page.evaluate("document.documentElement.scrollWidth") <= TABLET["width"]
+        assert page.evaluate("document.documentElement.scrollWidth") <= TABLET["width"], name
         for label in (re.compile("^Stop"), re.compile("^E-stop")):
             box = page.get_by_role("button", name=label).bounding_box()
             assert box is not None
@@ -109,17 +116,16 @@ def test_tablet_holds_every_page(browser: Browser, server: Server, planned: str,
                 assert inside["x"] + inside["width"] <= TABLET["width"]
 
 
-def test_theme_is_remembered(page: Page) -> None:
-    page.goto("/rigs")
+def test_a_reload_keeps_theme_and_address(page: Page, stocked: Stock) -> None:
+    page.goto(f"/plans/{stocked.plan['id']}")
+    shown = page.get_by_role("region", name="Plan of Slow roll")
+    expect(shown).to_be_visible(timeout=SOON_MS)
     page.get_by_role("button", name="Use the light theme").click()
     page.reload()
+    expect(shown).to_be_visible(timeout=SOON_MS)
     assert page.locator("html").get_attribute("data-theme") == "light"
-
-
-def test_addresses_survive_a_reload(page: Page, planned: str) -> None:
-    plan = page.request.get("/api/v1/plans").json()[0]
-    page.goto(f"/plans/{plan['id']}")
-    expect(page.get_by_role("region", name=f"Plan of {plan['trajectory_name']}")).to_be_visible()
-    page.reload()
-    expect(page.get_by_role("region", name=f"Plan of {plan['trajectory_name']}")).to_be_visible()
-    page.go_back()
+    # A rig's name may have a dot in it.
+    answer = page.goto("/operate/my.rig")
+    assert answer is not None
+    assert answer.ok
+    expect(page.get_by_text("no rig named my.rig")).to_be_visible(timeout=SOON_MS)

@@ -11,6 +11,7 @@ import type {
   PlanIn,
   PlanSamples,
   Problem,
+  RemedyKind,
   Rig,
   Run,
   ScenePose,
@@ -100,6 +101,7 @@ export const api = {
   planSamples: (id: string, points = 1200) => request<PlanSamples>("GET", `/plans/${at(id)}/samples?points=${points}`),
   createPlan: (trajectory: string, rig: string, method: string) =>
     request<Plan>("POST", "/plans", { trajectory, rig, method } satisfies Pick<PlanIn, "trajectory" | "rig" | "method">),
+  createRemedy: (plan: string, kind: RemedyKind) => request<Plan>("POST", `/plans/${at(plan)}/remedies`, { kind }),
   cancelPlan: (id: string) => request<void>("DELETE", `/plans/${at(id)}`),
 
   comparisons: () => request<Comparison[]>("GET", "/compare"),

@@ -197,6 +197,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/plans/{plan}/remedies": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Add Remedy
+         * @description Search what would make this plan's flight fit its rig: a plan of its own, with progress and cancel as any other.
+         *
+         *     It is planned with method plan. What was changed is in its `remedy`; it can be loaded like the rest, but for a
+         *     relaxed limit, which the rig must be given first.
+         */
+        post: operations["add_remedy_api_v1_plans__plan__remedies_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/plans/{plan}/samples": {
         parameters: {
             query?: never;
@@ -1100,6 +1123,150 @@ export interface components {
             /** Sample */
             sample: number;
         };
+        /**
+         * LiveLoad
+         * @description How a live source is flown: a step method that keeps the limits, and its options.
+         */
+        LiveLoad: {
+            /**
+             * First Sample S
+             * @description How long go_live waits for the source
+             * @default 5
+             */
+            first_sample_s: number;
+            /**
+             * Method
+             * @default exact
+             */
+            method: string;
+            /**
+             * Options
+             * @default {}
+             */
+            options: {
+                [key: string]: boolean | number | string;
+            };
+        };
+        /**
+         * LiveOpened
+         * @description The answer to open. What comes next is the session's: arm, go_live.
+         */
+        LiveOpened: {
+            /**
+             * Loaded
+             * @description Whether the session has a live source loaded
+             */
+            loaded: boolean;
+            /** Rate Hz */
+            rate_hz: number;
+            /** Rig */
+            rig: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            /**
+             * Type
+             * @default opened
+             * @constant
+             */
+            type: "opened";
+        };
+        /**
+         * LiveProblem
+         * @description A message that was not used; the connection goes on, but where the rig process is gone.
+         */
+        LiveProblem: {
+            problem: components["schemas"]["Problem"];
+            /**
+             * Type
+             * @default problem
+             * @constant
+             */
+            type: "problem";
+        };
+        /**
+         * LiveReplyOut
+         * @description What became of a sample; null is not a number: nothing is followed.
+         *
+         *     `error_deg`: angles commanded in the tick that took the sample, against the attitude flown then; `lag_deg`: against
+         *     this very sample; `margin`: smallest relative distance to a limit; `latency_us`: in the rig process;
+         *     `server_latency_us`: from the message's arrival at the server to this answer.
+         */
+        LiveReplyOut: {
+            /** Angles Deg */
+            angles_deg: number[];
+            /** Error Deg */
+            error_deg: number | null;
+            /** Lag Deg */
+            lag_deg: number | null;
+            /** Latency Us */
+            latency_us: number;
+            /** Margin */
+            margin: number | null;
+            /**
+             * Sequence
+             * @description Counts the samples of this client, from 0
+             */
+            sequence: number;
+            /** Server Latency Us */
+            server_latency_us: number | null;
+            /** Status */
+            status: ("followed" | "limited" | "dropped" | "idle")[];
+            /** Time S */
+            time_s: number;
+            /**
+             * Type
+             * @default reply
+             * @constant
+             */
+            type: "reply";
+        };
+        /**
+         * LiveSampleIn
+         * @description One attitude: `q` (w, x, y, z) or `euler_deg`, as the convention says; body rates where the source has them.
+         */
+        LiveSampleIn: {
+            /**
+             * Body Rate Deg S
+             * @default null
+             */
+            body_rate_deg_s: [
+                number,
+                number,
+                number
+            ] | null;
+            /**
+             * Euler Deg
+             * @default null
+             */
+            euler_deg: [
+                number,
+                number,
+                number
+            ] | null;
+            /**
+             * Q
+             * @default null
+             */
+            q: [
+                number,
+                number,
+                number,
+                number
+            ] | null;
+            /**
+             * Time S
+             * @description The source's clock, rising
+             */
+            time_s: number;
+            /**
+             * Type
+             * @constant
+             */
+            type: "sample";
+        };
         /** Load */
         Load: {
             args: components["schemas"]["LoadArgs"];
@@ -1110,13 +1277,17 @@ export interface components {
             command: "load";
             lease?: components["schemas"]["LeaseToken"] | null;
         };
-        /** LoadArgs */
+        /**
+         * LoadArgs
+         * @description A plan, or a live source.
+         */
         LoadArgs: {
+            live?: components["schemas"]["LiveLoad"] | null;
             /**
              * Plan
              * @description Id of a flyable plan of this rig
              */
-            plan: string;
+            plan?: string | null;
         };
         /**
          * MarginOut
@@ -1266,6 +1437,45 @@ export interface components {
              * @constant
              */
             type: "opened";
+        };
+        /**
+         * OpenLive
+         * @description First message of the client. With `lease` it loads the live source; without, somebody else loads it.
+         *
+         *     `convention` is of JSON samples: nue (yaw, pitch, roll) or ned (heading, pitch, bank).
+         */
+        OpenLive: {
+            /**
+             * Convention
+             * @default nue
+             * @enum {string}
+             */
+            convention: "nue" | "ned";
+            /**
+             * First Sample S
+             * @description How long go_live waits for the source
+             * @default 5
+             */
+            first_sample_s: number;
+            /** @default null */
+            lease: components["schemas"]["LeaseToken"] | null;
+            /**
+             * Method
+             * @default exact
+             */
+            method: string;
+            /**
+             * Options
+             * @default {}
+             */
+            options: {
+                [key: string]: boolean | number | string;
+            };
+            /**
+             * Type
+             * @constant
+             */
+            type: "open";
         };
         /**
          * OpenSolve
@@ -1421,6 +1631,8 @@ export interface components {
             rate_hz: number | null;
             /** Refusal */
             refusal: string | null;
+            /** @description Null: the flight as it is */
+            remedy: components["schemas"]["RemedyOut"] | null;
             report: components["schemas"]["ReportOut"] | null;
             /**
              * Resampling
@@ -1651,6 +1863,69 @@ export interface components {
              * @description NumPy type string, little-endian
              */
             type: string;
+        };
+        /**
+         * RemedyChange
+         * @description What was changed, by how much (`unit`: times, deg, deg/s or deg/s^2), and that in words.
+         */
+        RemedyChange: {
+            /** Statement */
+            statement: string;
+            /** Unit */
+            unit: string;
+            /** Value */
+            value: number;
+            /**
+             * What
+             * @description time; the axis yaw, pitch or roll; or frame and limit
+             */
+            what: string;
+        };
+        /**
+         * RemedyIn
+         * @description What may be changed to make a flight fit; `relax` may be asked of one frame or one kind of limit alone.
+         */
+        RemedyIn: {
+            /** Frame */
+            frame?: ("base" | "outer" | "middle" | "inner") | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "slow_down" | "heading_offset" | "mounting_offset" | "relax";
+            /** Limit */
+            limit?: ("position" | "rate" | "acceleration") | null;
+        };
+        /**
+         * RemedyOut
+         * @description The remedy that a plan is. What was changed is null until the search has ended.
+         */
+        RemedyOut: {
+            /**
+             * Alternatives
+             * @description Other single limits that would do, the least raise first
+             */
+            alternatives: components["schemas"]["RemedyChange"][];
+            change: components["schemas"]["RemedyChange"] | null;
+            /** Frame */
+            frame: ("base" | "outer" | "middle" | "inner") | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "slow_down" | "heading_offset" | "mounting_offset" | "relax";
+            /** Limit */
+            limit: ("position" | "rate" | "acceleration") | null;
+            /**
+             * Of
+             * @description The plan that it is a remedy of
+             */
+            of: string;
+            /**
+             * Sufficient
+             * @description Whether the flight fits with it
+             */
+            sufficient: boolean | null;
         };
         /**
          * Replayed
@@ -2906,6 +3181,50 @@ export interface operations {
                 };
                 content: {
                     "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    add_remedy_api_v1_plans__plan__remedies_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                plan: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RemedyIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanOut"];
                 };
             };
             /** @description Validation Error */

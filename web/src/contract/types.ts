@@ -19,6 +19,7 @@ export type PlanIn = Schemas["PlanIn"];
 export type PlanMargin = Schemas["MarginOut"];
 export type PlanSamples = Schemas["PlanSamples"];
 export type Problem = Schemas["Problem"];
+export type RemedyKind = Schemas["RemedyIn"]["kind"];
 export type Rig = Schemas["RigOut"];
 export type Run = Schemas["RunOut"];
 export type ScenePose = Schemas["ScenePoseOut"];

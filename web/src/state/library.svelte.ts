@@ -1,6 +1,6 @@
 /** What the server keeps: rigs, trajectories, methods, runs, and the jobs: plans and comparisons. */
 import { api, messageOf, upload } from "../adapter/api";
-import type { Comparison, Health, Method, Plan, Rig, Run, Trajectory } from "../contract/types";
+import type { Comparison, Health, Method, Plan, RemedyKind, Rig, Run, Trajectory } from "../contract/types";
 import { Jobs } from "./jobs.svelte";
 
 class Library {
@@ -62,6 +62,11 @@ class Library {
     this.#plans.put(plan);
     this.plan = plan.id;
     return plan;
+  }
+
+  /** Searches a remedy: a plan of its own, which is not what the operator works with before it is chosen. */
+  async createRemedy(plan: string, kind: RemedyKind): Promise<void> {
+    this.#plans.put(await api.createRemedy(plan, kind));
   }
 
   async cancelPlan(id: string): Promise<void> {

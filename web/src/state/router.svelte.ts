@@ -8,6 +8,11 @@ class Router {
     window.addEventListener("popstate", () => (this.route = routeOf(location.pathname)));
   }
 
+  /** What a page shows; null where another page is open, whose item is none of its own. */
+  item(page: Page): string | null {
+    return this.route.page === page ? this.route.item : null;
+  }
+
   go(page: Page, item?: string | null): void {
     const path = pathOf(page, item);
     if (path !== location.pathname) history.pushState(null, "", path);
