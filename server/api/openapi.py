@@ -20,6 +20,8 @@ from server.api.wire_stream import (
     Seek,
     SessionChanged,
     Speed,
+    StopNow,
+    Stopped,
     StreamProblem,
     Subscribe,
     Telemetry,
@@ -27,14 +29,14 @@ from server.api.wire_stream import (
 from server.api.wire_trajectories import TrajectoryIn
 
 MESSAGES = (
-    *(Subscribe, Ping, Seek, Speed, Pause, Play),
+    *(Subscribe, Ping, StopNow, Seek, Speed, Pause, Play),
     *(OpenSolve, SolveSamples),
     *(OpenLive, LiveSampleIn),
     TrajectoryIn,
 )
 ANSWERS = (
     Problem,
-    *(Hello, Telemetry, SessionChanged, Replayed, Pong, StreamProblem),
+    *(Hello, Telemetry, SessionChanged, Replayed, Pong, Stopped, StreamProblem),
     *(Opened, Solved, SolveProblem),
     *(LiveOpened, LiveReplyOut, LiveProblem),
 )
