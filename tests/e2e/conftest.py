@@ -95,7 +95,11 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         "--data-dir",
         str(data),
     ]
-    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=log, text=True)
+    # The machine of the tests may starve a live source: bridged longer than on a quiet one.
+    patient = {"FULLPOSE_LIVE_DELAY_MS": "20", "FULLPOSE_LIVE_EXTRAPOLATE_MS": "1000"}
+    process = subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **patient}
+    )
     try:
         assert process.stdout is not None
         url = process.stdout.readline().strip()

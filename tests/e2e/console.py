@@ -51,7 +51,7 @@ class Console:
 
     def solve(self, method: str) -> None:
         """Plan the chosen flight and wait until it can be flown."""
-        self.page.get_by_label("Method").select_option(method)
+        self.page.get_by_label("Method", exact=True).select_option(method)
         self.page.get_by_role("button", name="Plan", exact=True).click()
         expect(self.plan).to_have_attribute("data-status", "done", timeout=SLOW_MS)
         expect(self.plan).to_have_attribute("data-flyable", "true")

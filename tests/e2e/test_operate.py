@@ -1,13 +1,19 @@
 """An operator flies a real flight on the simulated rig, in a real browser."""
 
+import contextlib
+import json
+import math
 import os
 import re
 import signal
+import threading
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
+from websockets.sync.client import connect
 
 from tests.e2e.conftest import FLIGHT, Pages, Server
 from tests.e2e.console import FRAMES, SLOW_MS, SOON_MS, Console
@@ -53,14 +59,14 @@ def test_flight_from_upload_to_replay(pages: Pages, shots: Path) -> None:
     page.keyboard.press("Space")
     console.expect_state("held")
     console.at_rest()
-    time, angles = console.path_time(), console.angles()
+    held_at, angles = console.path_time(), console.angles()
     page.wait_for_timeout(700)  # what must not happen is watched for a while
-    assert console.path_time() == time
+    assert console.path_time() == held_at
     assert apart(angles, console.angles()) < 0.05
     assert console.error("solve") < 1e-9
     page.keyboard.press("Space")
     console.expect_state("running")
-    console.until(lambda: console.path_time() > time + 0.5, 10.0)
+    console.until(lambda: console.path_time() > held_at + 0.5, 10.0)
     assert console.error("solve") < 1e-9
 
     # E-stop latches; the way out is to acknowledge, then to reset.
@@ -157,6 +163,52 @@ def test_two_consoles_at_one_rig(page: Page, pages: Pages, shots: Path) -> None:
     expect(watched.page.get_by_test_id("lease")).to_have_attribute("data-held", "true", timeout=SOON_MS)
     watched.page.get_by_role("button", name="Release").click()
     expect(page.get_by_role("button", name="Take control")).to_be_visible()
+
+
+def swing(address: str, rig: str, over: threading.Event) -> None:
+    """A live source: a small swing from rest, a sample every 10 ms, until it is over."""
+    url = f"{address.replace('http', 'ws', 1)}/api/v1/rigs/{rig}/live"
+    with connect(url, proxy=None, compression=None) as link:
+        link.send(json.dumps({"type": "open"}))
+        begun = time.monotonic()
+        while not over.wait(0.01):
+            t = time.monotonic() - begun
+            angle = 20.0 * min(1.0, t / 3.0) ** 3 * math.sin(t)
+            link.send(json.dumps({"type": "sample", "time_s": t, "euler_deg": [angle, 0.5 * angle, -angle]}))
+            with contextlib.suppress(TimeoutError):
+                while True:
+                    link.recv(timeout=0.0)
+
+
+def test_a_live_source_is_followed_until_it_is_gone(page: Page, server: Server, shots: Path) -> None:
+    console = Console(page, "horizontal-4")
+    console.open()
+    console.take_control()
+    console.give("connect", "idle")
+    page.get_by_text("Fly a live source").click()
+    page.get_by_label("Live method").select_option("exact")
+    page.get_by_role("button", name="Load live").click()
+    console.expect_state("ready")
+    live = page.get_by_test_id("live")
+    expect(live).to_have_text("loaded, not flown")
+    console.give("arm", "armed")
+    expect(console.button("start")).to_be_hidden()
+    over = threading.Event()
+    source = threading.Thread(target=swing, args=(server.url, "horizontal-4", over))
+    source.start()
+    try:
+        console.give("go_live", "live")
+        expect(live).to_have_text("followed", timeout=SOON_MS)
+        before = console.angles()
+        console.until(lambda: apart(before, console.angles()) > 1.0, 20.0)
+        console.until(lambda: console.error("solve") < 1e-9, 20.0)  # but while it is late
+        page.screenshot(path=shots / "operate-live.png")
+    finally:
+        over.set()
+        source.join()
+    # A source that goes is a controlled stop, with its alarm.
+    console.expect_state("armed", within_ms=30_000)
+    expect(page.get_by_text("waits for acknowledge").first).to_be_visible()
 
 
 def test_stale_data_disables_motion_but_never_stop(page: Page, server: Server) -> None:
