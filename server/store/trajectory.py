@@ -55,8 +55,9 @@ class Trajectory:
     def sha256(self) -> str:
         """Address of the flight: of its samples, so that one flight has one address whatever file it came in."""
         digest = hashlib.sha256(b"fullpose.trajectory/1\n")
-        digest.update(np.ascontiguousarray(self.time, "<f8").tobytes())
-        digest.update(np.ascontiguousarray(self.q, "<f8").tobytes())
+        # Not as bytes: a copy is made under the interpreter's lock, and 100 MB of it would hold an E-stop up.
+        digest.update(np.ascontiguousarray(self.time, "<f8"))
+        digest.update(np.ascontiguousarray(self.q, "<f8").reshape(-1))
         return digest.hexdigest()
 
 
