@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
+from solver._jit import inner, kernel
 from solver.charts import TURN, base_chart, inner_chart, nearest, project
-from solver.kinematics import jacobian, payload_attitude, rotation_error
+from solver.kinematics import four_axis_pose, rotation_error
 from solver.limits import HOME, MAX, MIN, WEIGHT, limit_table
 from solver.rig import Rig
 from solver.solution import EXACT, limited_code
@@ -20,7 +20,7 @@ LONGEST_DESCENT = 0.2  # [rad] a frame in one of them
 DESCENT_DAMPING = 1e-9
 
 
-@kernel
+@inner
 def turn_inside(angle: float, reference: float, low: float, high: float) -> float:
     """The angle, plus whole turns, nearest to `reference` within [low, high]; else the one nearest to the range."""
     angle = nearest(angle, reference)
@@ -31,14 +31,14 @@ def turn_inside(angle: float, reference: float, low: float, high: float) -> floa
     return angle
 
 
-@kernel
+@inner
 def copy(source: Array, target: Array) -> None:
     """target <- source, (4,): a slice assignment takes Numba far longer to compile."""
     for i in range(4):
         target[i] = source[i]
 
 
-@kernel
+@inner
 def chart_pose(
     table: Array, horizontal: bool, C: Array, chart: int, parameter: float, reference: Array, d: Array
 ) -> tuple[float, float]:
@@ -61,7 +61,7 @@ def chart_pose(
 
 
 @kernel
-def search_start(table: Array, axes: NDArray[np.int64], horizontal: bool, C: Array, reference: Array, d: Array) -> int:
+def search_start(table: Array, horizontal: bool, C: Array, reference: Array, d: Array) -> int:
     """d <- the exact pose for C nearest to `reference` inside the position limits; returns -1.
 
     Both charts and both their branches are searched on a grid, then by halving steps. Where no exact pose is inside
@@ -111,14 +111,14 @@ def search_start(table: Array, axes: NDArray[np.int64], horizontal: bool, C: Arr
     F = np.empty((3, 3))
     J = np.empty((3, 4))
     A = np.empty((4, 5))
+    n = np.empty(4)
     e = np.empty(3)
     s = np.empty(4)
     work = np.empty((4, 4))
     for _ in range(DESCENTS):
-        payload_attitude(axes, d, F)
+        four_axis_pose(horizontal, d, F, J, n)
         if rotation_error(C, F, e) < 1e-12:
             break
-        jacobian(axes, d, J)
         for i in range(4):
             work[0, i] = table[MIN, i] - d[i]
             work[1, i] = table[MAX, i] - d[i]
@@ -141,5 +141,5 @@ def start_pose(rig: Rig, attitude: Array, near: Array | None) -> tuple[Array, in
     table = limit_table(rig)
     reference = table[HOME].copy() if near is None else np.asarray(near, float).copy()
     pose = np.empty(4)
-    frame = search_start(table, rig.axes, rig.geometry.horizontal, np.ascontiguousarray(attitude), reference, pose)
+    frame = search_start(table, rig.geometry.horizontal, np.ascontiguousarray(attitude), reference, pose)
     return pose, EXACT if frame < 0 else limited_code(int(frame), 0)

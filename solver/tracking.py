@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from solver._jit import inlined, inner
 from solver.charts import project
-from solver.kinematics import jacobian, null_vector, payload_attitude, rotation_error, self_motion
+from solver.kinematics import four_axis_pose, payload_attitude, rotation_error, self_motion
 from solver.limits import ACCELERATION, HOME, MAX, MIN, WEIGHT, Codes, approach_rate, inside, limit_box, tolerances
+from solver.rig import Z
 from solver.solution import EXACT
 from solver.step import box_least_squares, clamp, null_interval, squared_damping
 
@@ -217,10 +218,8 @@ def give_way(
     for i in range(4):
         x[i] = d[i]
     for again in range(2):
-        payload_attitude(axes, x, F)
+        volume = four_axis_pose(axes[0] == Z, x, F, J, work[NULL])
         rotation_error(G, F, e)
-        jacobian(axes, x, J)
-        volume = null_vector(J, work[NULL])
         for i in range(4):
             work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
             work[LO, i] -= x[i]
