@@ -1,23 +1,26 @@
-"""From the E-stop request over HTTP to the first braking command, while the rig moves.
+"""From the E-stop request, over HTTP and over the stream's WebSocket, to the first braking command.
 
     python -m bench.estop_latency [--times 100] [--viewers 200]
 
-The clock starts before the connection is opened and ends when the loop has written the first braking
-command to the drive (the loop notes the time in shared memory). The same for the flag alone, without HTTP.
+The rig moves. The clock starts before the request is sent, over HTTP before the connection is opened, and ends when
+the loop has written the first braking command to the drive (the loop notes the time in shared memory). The same for
+the flag alone, from this process.
 """
 
 import argparse
 import asyncio
+import contextlib
 import dataclasses
 import http.client
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from bench.machine import machine
-from bench.rig_load import loaded, post, served
+from bench.rig_load import Viewer, loaded, post, served
 from server.runtime.config import RigConfig
 from server.runtime.host import RigHost
 from solver.rig import builtin_rigs
@@ -36,7 +39,21 @@ def ask(port: int) -> None:
     assert answer.status == 200, body
 
 
-async def stop_once(host: RigHost, plan: Path, port: int | None, sign: float) -> float:
+class OpenStream:
+    """A stream that a console has open all the time."""
+
+    def __init__(self, port: int) -> None:
+        self._viewer = Viewer(port, RIG)
+
+    def ask(self) -> None:
+        """Request the E-stop over it; what it has been sent meanwhile is read first, pings are answered."""
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                assert self._viewer.read()
+        self._viewer.send(b'{"type":"estop"}')
+
+
+async def stop_once(host: RigHost, plan: Path, over: Callable[[], None], sign: float) -> float:
     """Milliseconds from the request to the first braking command, in the middle of a move."""
     operator = Operator(host, "bench")
     await operator.take("takeover")
@@ -50,10 +67,7 @@ async def stop_once(host: RigHost, plan: Path, port: int | None, sign: float) ->
     shared = host._shared
     assert shared is not None
     asked = time.monotonic_ns()
-    if port is None:
-        host.estop("bench")
-    else:
-        await asyncio.to_thread(ask, port)
+    await asyncio.to_thread(over)
     await operator.until("estopped")
     await asyncio.sleep(0.05)
     wrote = int(shared.header["estop_wrote_ns"][0])
@@ -67,7 +81,7 @@ async def stop_once(host: RigHost, plan: Path, port: int | None, sign: float) ->
 def row(name: str, values: list[float]) -> str:
     """One line of the table."""
     p50, p99 = np.percentile(values, [50, 99])
-    return f"{name:36s} {p50:8.2f} {p99:8.2f} {max(values):8.2f} {len(values):6d}"
+    return f"{name:44s} {p50:8.2f} {p99:8.2f} {max(values):8.2f} {len(values):6d}"
 
 
 async def measure(times: int, viewers: int) -> None:
@@ -77,7 +91,7 @@ async def measure(times: int, viewers: int) -> None:
         root = Path(folder)
         plan = written(root / "plan", plan_of(rig, 1.0))
         print(machine())
-        print(f"{'request to first braking command [ms]':36s} {'p50':>8s} {'p99':>8s} {'max':>8s} {'times':>6s}")
+        print(f"{'request to first braking command [ms]':44s} {'p50':>8s} {'p99':>8s} {'max':>8s} {'times':>6s}")
         with served(root / "data") as port:
             status, body = post(port, f"/rigs/{RIG}/lease", {"action": "take"})
             assert status == 200, body
@@ -85,11 +99,16 @@ async def measure(times: int, viewers: int) -> None:
             config = RigConfig(RIG, rig, root / "data", root / "data" / "runs")
             host = RigHost(dataclasses.replace(config, directory=lock.parent))
             await host.start()
-            for name, count in (("", 0), (f", {viewers} viewers, upload, planning", viewers)):
-                span = 4.0 * times + 30.0
+            for name, count in (("", 0), (f", {viewers} viewers, uploads, planning", viewers)):
+                span = 12.0 * times + 30.0
                 with loaded(port, RIG, count, span, upload=bool(count), plan=bool(count)):
-                    await asyncio.sleep(3.0 if count else 0.0)
-                    for way, over in (("flag", None), ("HTTP", port)):
+                    await asyncio.sleep(5.0 if count else 0.0)
+                    ways = {
+                        "flag": lambda: host.estop("bench"),
+                        "HTTP": lambda: ask(port),
+                        "WebSocket": OpenStream(port).ask,
+                    }
+                    for way, over in ways.items():
                         taken = [await stop_once(host, plan, over, (-1.0) ** k) for k in range(times)]
                         print(row(way + name, taken), flush=True)
             await host.close(stop_rig=False)

@@ -1,11 +1,13 @@
 """The peers on the rigs: mink (MuJoCo) and pink (Pinocchio), each stepping after the same attitudes.
 
-Both solve a quadratic programme a step: an orientation task on the payload under position and rate limits, then
-integrate; what their own examples do. Neither has an acceleration limit or an exact end.
+Both solve a quadratic programme a step, then integrate; what their own examples do. They are given an orientation task
+on the payload of gain 1, the rig's position limits where a frame has stops, and its rate limits. Neither has an
+acceleration limit or an exact end. Timed: the target taken over, `solve_ik`, the integration; the targets are made
+before. `solve_ik` of both asks for a solver and has no default: see `DOCUMENTED`.
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -15,14 +17,18 @@ from bench.mjcf import mjcf
 from solver.rig import FRAMES, Rig
 
 Array = NDArray[np.float64]
-SOLVER = "daqp"  # the quickest for both here
 
-# (rig, rate [Hz], attitude (n, 3, 3), start (4,) [rad]) -> (seconds of each step (n,), angles (n, 4) [rad], how many
-# steps had no solution: the pose was kept)
-Peer = Callable[[Rig, float, Array, Array], tuple[Array, Array, int]]
+# (seconds of each step (n,), angles (n, 4) [rad], how many steps had no solution: the pose was kept)
+Run = tuple[Array, Array, int]
+# (rig, rate [Hz], attitude (n, 3, 3), start (4,) [rad], solver as qpsolvers names it)
+Peer = Callable[[Rig, float, Array, Array, str], Run]
+
+# mink requires `qpsolvers[daqp]`; its quickstart and its own benchmark take daqp. pink's README takes quadprog.
+DOCUMENTED = {"mink": "daqp", "pink": "quadprog"}
+TRIAL = 300  # samples that the quickest solver is chosen on
 
 
-def run_mink(rig: Rig, rate_hz: float, C: Array, start: Array) -> tuple[Array, Array, int]:
+def run_mink(rig: Rig, rate_hz: float, C: Array, start: Array, solver: str) -> Run:
     """mink's `solve_ik`."""
     import mink
     import mujoco
@@ -40,7 +46,7 @@ def run_mink(rig: Rig, rate_hz: float, C: Array, start: Array) -> tuple[Array, A
     def step(target: Any) -> Array | None:
         task.set_target(target)
         try:
-            rate = mink.solve_ik(configuration, [task], dt, SOLVER, limits=limits)
+            rate = mink.solve_ik(configuration, [task], dt, solver, limits=limits)
         except mink.NoSolutionFound:
             return None
         configuration.integrate_inplace(rate, dt)
@@ -49,7 +55,7 @@ def run_mink(rig: Rig, rate_hz: float, C: Array, start: Array) -> tuple[Array, A
     return _timed(step, targets, start)
 
 
-def run_pink(rig: Rig, rate_hz: float, C: Array, start: Array) -> tuple[Array, Array, int]:
+def run_pink(rig: Rig, rate_hz: float, C: Array, start: Array, solver: str) -> Run:
     """pink's `solve_ik`."""
     import pinocchio as pin
     from pink import Configuration, solve_ik
@@ -75,7 +81,7 @@ def run_pink(rig: Rig, rate_hz: float, C: Array, start: Array) -> tuple[Array, A
         task.set_target(target)
         try:
             # A solution that rounding puts a hair beyond a limit is no reason to stop the race.
-            rate = solve_ik(configuration, [task], dt, solver=SOLVER, safety_break=False)
+            rate = solve_ik(configuration, [task], dt, solver=solver, safety_break=False)
         except NoSolutionFound:
             return None
         configuration.integrate_inplace(rate, dt)
@@ -87,7 +93,33 @@ def run_pink(rig: Rig, rate_hz: float, C: Array, start: Array) -> tuple[Array, A
 PEERS: dict[str, Peer] = {"mink": run_mink, "pink": run_pink}
 
 
-def _timed(step: Callable[[Any], Array | None], targets: list[Any], start: Array) -> tuple[Array, Array, int]:
+def solvers(name: str, rig: Rig, rate_hz: float, C: Array, start: Array) -> dict[str, str]:
+    """{solver: why it is in the race} of a peer: the quickest of those installed first, then the documented one."""
+    from qpsolvers import dense_solvers
+
+    medians = {s: float(np.median(PEERS[name](rig, rate_hz, C[:TRIAL], start, s)[0])) for s in dense_solvers}
+    quickest = min(medians, key=medians.__getitem__)
+    chosen = {quickest: f"quickest of the dense solvers here ({', '.join(sorted(medians))})"}
+    documented = DOCUMENTED[name]
+    if documented == quickest:
+        chosen[quickest] += "; the documented one"
+    elif documented in medians:
+        chosen[documented] = "the documented one"
+    else:
+        chosen[quickest] += f"; the documented one, {documented}, is not installed"
+    return chosen
+
+
+def race(names: list[str], rig: Rig, rate_hz: float, C: Array, start: Array, repeats: int) -> Iterator[tuple[str, Run]]:
+    """("peer solver", its run) of every peer and solver, the steps of all repeats timed; says why each solver."""
+    for name in names:
+        for solver, why in solvers(name, rig, rate_hz, C, start).items():
+            runs = [PEERS[name](rig, rate_hz, C, start, solver) for _ in range(repeats)]
+            print(f"{name} with {solver}: {why}")
+            yield f"{name} {solver}", (np.concatenate([run[0] for run in runs]), *runs[0][1:])
+
+
+def _timed(step: Callable[[Any], Array | None], targets: list[Any], start: Array) -> Run:
     times, angles = np.empty(len(targets)), np.empty((len(targets), 4))
     failed = 0
     for k, target in enumerate(targets):

@@ -101,8 +101,13 @@ class Viewer:
         assert b" 101 " in head.splitlines()[0], head
         self._count(head.split(b"\r\n\r\n", 1)[1])
         # A client's frames are masked; a mask of zeros leaves them as they are.
-        self.link.sendall(_masked(json.dumps({"type": "subscribe", "rate_hz": 30}).encode()))
+        self.send(json.dumps({"type": "subscribe", "rate_hz": 30}).encode())
         self.link.setblocking(False)
+
+    def send(self, payload: bytes) -> None:
+        """A message of text, shorter than 126 bytes."""
+        assert len(payload) < 126
+        self.link.sendall(bytes([0x81, 0x80 | len(payload)]) + bytes(4) + payload)
 
     def read(self) -> bool:
         """Count what has come; False at the end."""
@@ -156,11 +161,6 @@ def view(port: int, rig: str, viewers: int, end: float, stop: threading.Event) -
             f"the load's own process {100 * used:.0f} % of a core",
             flush=True,
         )
-
-
-def _masked(payload: bytes) -> bytes:
-    assert len(payload) < 126
-    return bytes([0x81, 0x80 | len(payload)]) + bytes(4) + payload
 
 
 def upload(port: int, end: float, stop: threading.Event) -> None:

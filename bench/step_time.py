@@ -2,38 +2,35 @@
 
     python -m bench.step_time [--flight examples/flights/loop.csv] [--rig vertical-4] [--methods exact,alm,lagrange]
 
-Ours: `solve()` at 1 kHz, the clock read every 16 samples. mink (stephane-caron's pink for MuJoCo): `solve_ik` with an
-orientation task on the payload, position and rate limits, its quickest QP solver here, then integrated: what its own
-examples do in a step. It has no acceleration limit and no exact end, so its error is printed too. `--cold` adds the
+Ours: `solve()` at 1 kHz, the clock read every 16 samples; "one a call": the stepper called sample by sample, as a live
+session does, where the call from Python is most of it. mink: see `bench.peers`; it is always called sample by sample,
+for it has no other way. It has no acceleration limit and no exact end, so its error is printed too. `--cold` adds the
 seconds that a fresh machine compiles for: one short solve with an empty cache, in a process of its own.
 """
 
 import argparse
 import os
-import platform
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any
 
-import mink
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.mjcf import mjcf
+from bench.machine import machine
+from bench.peers import race
 from solver.attitude import dcm_from_quaternion, quaternion_from_ned
+from solver.methods import METHODS
 from solver.resample import resample
-from solver.rig import FRAMES, Rig, builtin_rigs
-from solver.solution import Solution
+from solver.rig import Rig, builtin_rigs
 from solver.solve import solve
 from solver.verify import attitude_errors, payload_attitudes, verify
 
 Array = NDArray[np.float64]
 RATE_HZ = 1000.0
-SOLVER = "daqp"
+SINGLE_SAMPLES = 5000  # of the flight, for the peers and for ours one a call
 COLD = """
 import sys, time
 begin = time.perf_counter()
@@ -58,52 +55,48 @@ def main() -> None:
     rig = builtin_rigs()[arguments.rig]
     rows = np.loadtxt(arguments.flight, delimiter=",", skiprows=1)
     flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:5]), RATE_HZ)
-    C = dcm_from_quaternion(flight.q)
-    print(f"{arguments.flight.name} on {rig.name}, {len(flight.time)} samples at {RATE_HZ:g} Hz, {_machine()}")
-    print(f"{'':24}{'median us':>10}{'p99 us':>10}{'matrix error':>14}{'limited':>9}{'violations':>12}")
-    starts = np.zeros(4)
-    for method in arguments.methods.split(","):
-        runs = [solve(flight.time, C, rig, method, clock=time.perf_counter) for _ in range(arguments.repeats + 1)][1:]
-        starts = runs[0].angles[0]
-        _row(method, [run.step_time for run in runs], runs[0])
-    times, angles = _mink(rig, flight.time, C, starts)
-    _row_of(f"mink {SOLVER}", times, attitude_errors(payload_attitudes(rig, angles), C)[1].max(), "-",
-            len(verify(flight.time, angles, rig).violations))  # fmt: skip
+    at, C = flight.time, dcm_from_quaternion(flight.q)
+    short = slice(0, SINGLE_SAMPLES)
+    methods = arguments.methods.split(",")
+    start = solve(at[:1], C[:1], rig, methods[0]).angles[0]
+    # First the peers: a row's ratio is to the first of them, the quickest.
+    peers = list(race(["mink"], rig, RATE_HZ, C[short], start, arguments.repeats))
+    quickest = float(np.median(peers[0][1][0]))
+    print(f"{arguments.flight.name} on {rig.name}, {len(at)} samples at {RATE_HZ:g} Hz, {machine()}")
+    head = ("median us", "p99 us", "x of mink", "matrix error", "violations")
+    print(f"{'':24}" + "".join(f"{word:>14}" for word in head))
+    for method in methods:
+        runs = [solve(at, C, rig, method, clock=time.perf_counter) for _ in range(arguments.repeats + 1)][1:]
+        _row(method, np.concatenate([run.step_time for run in runs]), quickest, rig, at, runs[0].angles, C)
+        single = [_one_a_call(method, rig, at[short], C[short]) for _ in range(arguments.repeats + 1)][1:]
+        times = np.concatenate([run[0] for run in single])
+        _row(f"{method}, one a call", times, quickest, rig, at[short], single[0][1], C[short])
+    for name, (times, angles, _) in peers:
+        _row(name, times, quickest, rig, at[short], angles, C[short])
     if arguments.cold:
-        for method in arguments.methods.split(","):
+        for method in methods:
             print(f"cold start of {method}: {_cold(method):.1f} s (imports and compilation)")
 
 
-def _row(name: str, times: list[Array], solution: Solution) -> None:
-    violations = len(verify(solution.time, solution.angles, solution.rig).violations)
-    _row_of(name, np.concatenate(times), solution.matrix_error.max(), str(solution.limited_samples), violations)
-
-
-def _row_of(name: str, times: Array, error: float, limited: str, violations: int) -> None:
-    median, p99 = np.percentile(times * 1e6, [50, 99])
-    print(f"{name:24}{median:10.2f}{p99:10.2f}{error:14.1e}{limited:>9}{violations:12}")
-
-
-def _mink(rig: Rig, flight_time: Array, C: Array, start: Array) -> tuple[Array, Array]:
-    """(seconds of each step, angles (n, 4) [rad]) of mink following the same attitudes."""
-    model = mujoco.MjModel.from_xml_string(mjcf(rig))
-    configuration = mink.Configuration(model, q=start.copy())
-    task = mink.FrameTask(FRAMES[3], "body", position_cost=0.0, orientation_cost=1.0, gain=1.0)
-    limits: list[Any] = [
-        mink.ConfigurationLimit(model),
-        mink.VelocityLimit(model, {FRAMES[i]: float(rig.max_rate[i]) for i in range(4)}),
-    ]
-    dt = 1.0 / RATE_HZ
-    targets = [mink.SE3.from_rotation(mink.SO3.from_matrix(np.ascontiguousarray(F.T))) for F in C]
-    times, angles = np.empty(len(flight_time)), np.empty((len(flight_time), 4))
-    for k, target in enumerate(targets):
+def _one_a_call(method: str, rig: Rig, at: Array, C: Array) -> tuple[Array, Array]:
+    """(seconds of each step (n,), angles (n, 4) [rad])."""
+    chosen = METHODS[method]
+    stepper = chosen.stepper(rig, chosen.options(), None, C[0])
+    times, angles = np.empty(len(at)), np.empty((len(at), 4))
+    for k in range(len(at)):
         begin = time.perf_counter()
-        task.set_target(target)
-        rate = mink.solve_ik(configuration, [task], dt, SOLVER, limits=limits)
-        configuration.integrate_inplace(rate, dt)
+        block = stepper.block(at[k : k + 1], C[k : k + 1])
         times[k] = time.perf_counter() - begin
-        angles[k] = configuration.q
+        angles[k] = block.angles[0]
     return times, angles
+
+
+def _row(name: str, times: Array, quickest: float, rig: Rig, at: Array, angles: Array, C: Array) -> None:
+    median, p99 = np.percentile(times, [50, 99])
+    error = attitude_errors(payload_attitudes(rig, angles), C)[1].max()
+    cells = [f"{median * 1e6:.2f}", f"{p99 * 1e6:.2f}", f"{quickest / median:.1f}", f"{error:.1e}"]
+    cells.append(str(len(verify(at, angles, rig).violations)))
+    print(f"{name:24}" + "".join(f"{cell:>14}" for cell in cells))
 
 
 def _cold(method: str) -> float:
@@ -113,15 +106,6 @@ def _cold(method: str) -> float:
             [sys.executable, "-c", COLD, method], env=environment, check=True, capture_output=True, text=True
         )
     return float(done.stdout)
-
-
-def _machine() -> str:
-    model = platform.processor() or platform.machine()
-    cpuinfo = Path("/proc/cpuinfo")
-    if cpuinfo.exists():
-        names = [line.split(":")[1].strip() for line in cpuinfo.read_text().splitlines() if "model name" in line]
-        model = names[0] if names else model
-    return f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}"
 
 
 if __name__ == "__main__":

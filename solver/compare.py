@@ -13,7 +13,7 @@ from solver.errors import MethodError
 from solver.methods import METHODS
 from solver.rig import FRAMES, LIMITS, Rig
 from solver.solution import Solution, limited_name
-from solver.solve import PLAN, check_flight, solve
+from solver.solve import PLAN, PREVIEW, check_flight, solve
 from solver.verify import Verification, verify
 
 Array = NDArray[np.float64]
@@ -127,13 +127,17 @@ def compare(
     if not methods:
         raise MethodError("no method to compare: expected at least one name")
     for method in methods:
-        if method not in METHODS and method != PLAN:
-            raise MethodError(f"method {method!r}: expected one of {', '.join((PLAN, *METHODS))}")
+        if method not in METHODS and method not in SOURCES:
+            raise MethodError(f"method {method!r}: expected one of {', '.join((*SOURCES, *METHODS))}")
     t, C = check_flight(time, attitude)
     return tuple(_row(t, C, rig, method, start, clock, progress) for method in dict.fromkeys(methods))
 
 
-PLAN_SOURCE = "the planner: dynamic programming over both charts, then a smooth curve (METHODS, section 8)"
+# Of the methods that are not step methods; both claim the limits.
+SOURCES = {
+    PLAN: "the planner: dynamic programming over both charts, then a smooth curve (METHODS, section 8)",
+    PREVIEW: "the exact step along a way re-planned over a horizon of known or predicted attitude (METHODS, section 9)",
+}
 
 
 def _row(
@@ -145,8 +149,8 @@ def _row(
     clock: Callable[[], float] | None,
     progress: Callable[[str, int, int], None] | None,
 ) -> Row:
-    if method == PLAN:
-        claims, source = True, PLAN_SOURCE
+    if method in SOURCES:
+        claims, source = True, SOURCES[method]
     else:
         claims, source = METHODS[method].claims_limits, METHODS[method].source
 
@@ -155,7 +159,7 @@ def _row(
             progress(method, done, total)
 
     try:
-        if clock and method != PLAN:
+        if clock and method not in SOURCES:
             # The first call loads the kernels, which is no part of a step.
             chosen = METHODS[method]
             chosen.stepper(rig, chosen.options(), None, attitude[0]).block(time[:2], attitude[:2])

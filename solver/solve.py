@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from solver.errors import InputError, MethodError
 from solver.methods import METHODS
+from solver.methods.base import Stepper
 from solver.rig import FRAMES, Rig
 from solver.solution import Blocking, Solution, limited_name
 from solver.verify import attitude_errors, payload_attitudes
@@ -16,6 +17,7 @@ from solver.verify import attitude_errors, payload_attitudes
 Array = NDArray[np.float64]
 
 PLAN = "plan"  # the one method that sees the whole flight at once
+PREVIEW = "preview"  # the one that sees a part of it ahead
 BLOCK = 16  # samples between two readings of the clock and two reports of progress
 ORTHONORMAL = 1e-9  # how far C C^T may be from the identity
 
@@ -46,21 +48,14 @@ def solve(
         if options is not None and not isinstance(options, PlanOptions):
             raise MethodError(f"options of {method}: expected PlanOptions, not {type(options).__name__}")
         return plan(t, C, rig, near, options=options, progress=progress, clock=clock).solution
-    if method not in METHODS:
-        raise MethodError(f"method {method!r}: expected one of {', '.join((PLAN, *METHODS))}")
-    chosen = METHODS[method]
-    if options is None:
-        options = chosen.options()
-    elif not isinstance(options, chosen.options):
-        raise MethodError(f"options of {method}: expected {chosen.options.__name__}, not {type(options).__name__}")
-
+    open_flight = _opener(method, options, rig, near, t, C)
     n = len(t)
     angles = np.empty((n, 4))
     limited = np.empty(n, np.int16)
     iterations = np.empty(n, np.int32)
     step_time = np.full(n, np.nan)
     begin = clock() if clock else np.nan
-    stepper = chosen.stepper(rig, options, near, C[0])
+    stepper = open_flight()
     for k in range(0, n, BLOCK):
         block = slice(k, min(k + BLOCK, n))
         before = clock() if clock else np.nan
@@ -71,7 +66,27 @@ def solve(
         if progress:
             progress(block.stop, n)
     solve_time = clock() - begin if clock else np.nan
-    return _solution(chosen.name, rig, t, C, angles, limited, iterations, step_time, solve_time)
+    return _solution(method, rig, t, C, angles, limited, iterations, step_time, solve_time)
+
+
+def _opener(
+    method: str, options: Any, rig: Rig, near: Array | None, time: Array, attitude: Array
+) -> Callable[[], Stepper]:
+    """What begins the flight with a method that goes sample by sample. Raises `MethodError`."""
+    if method == PREVIEW:
+        from solver.planner import PreviewFlight, PreviewOptions
+
+        ahead = PreviewOptions() if options is None else options
+        if not isinstance(ahead, PreviewOptions):
+            raise MethodError(f"options of {method}: expected PreviewOptions, not {type(options).__name__}")
+        return lambda: PreviewFlight(rig, ahead, near, time, attitude)
+    if method not in METHODS:
+        raise MethodError(f"method {method!r}: expected one of {', '.join((PLAN, PREVIEW, *METHODS))}")
+    chosen = METHODS[method]
+    own = chosen.options() if options is None else options
+    if not isinstance(own, chosen.options):
+        raise MethodError(f"options of {method}: expected {chosen.options.__name__}, not {type(options).__name__}")
+    return lambda: chosen.stepper(rig, own, near, attitude[0])
 
 
 def _solution(

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from solver.rig import Rig
     from solver.solution import Solution
 
-METHODS = "plan, exact, alm, dwln, lagrange, weighted, gradient_projection, fixed_joint, clamped, follow_up, three_axis"
+METHODS = (
+    "plan, preview, exact, alm, dwln, lagrange, weighted, gradient_projection, fixed_joint, clamped, follow_up, "
+    "three_axis"
+)
 
 
 def register(app: typer.Typer) -> None:

@@ -6,13 +6,14 @@ from typing import Any
 from solver.errors import MethodError
 from solver.methods import METHODS
 
-PLAN = "plan"
+PLAN, PREVIEW = "plan", "preview"
 PLAN_SOURCE = "the whole flight at once: dynamic programming on both charts, then a sparse quadratic programme"
+PREVIEW_SOURCE = "the exact step along a way re-planned over a horizon of known or predicted attitude"
 
 
 def method_names() -> tuple[str, ...]:
     """All methods, in the order of the command line."""
-    return (PLAN, *METHODS)
+    return (PLAN, PREVIEW, *METHODS)
 
 
 def method_options(method: str, values: dict[str, Any]) -> Any:
@@ -63,8 +64,8 @@ def parse_option(text: str, method: str) -> tuple[str, Any]:
 
 
 def _options_type(method: str) -> type[Any]:
-    if method == PLAN:
-        from solver.planner import PlanOptions  # its quadratic programme solver is loaded by those who plan
+    if method in (PLAN, PREVIEW):
+        from solver.planner import PlanOptions, PreviewOptions  # the planner is loaded by those who plan
 
-        return PlanOptions
+        return PlanOptions if method == PLAN else PreviewOptions
     return METHODS[method].options

@@ -56,8 +56,8 @@ class Trajectory:
         """Address of the flight: of its samples, so that one flight has one address whatever file it came in."""
         digest = hashlib.sha256(b"fullpose.trajectory/1\n")
         # Not as bytes: a copy is made under the interpreter's lock, and 100 MB of it would hold an E-stop up.
-        digest.update(np.ascontiguousarray(self.time, "<f8"))
-        digest.update(np.ascontiguousarray(self.q, "<f8").reshape(-1))
+        digest.update(np.ascontiguousarray(self.time, "<f8").data)
+        digest.update(np.ascontiguousarray(self.q, "<f8").reshape(-1).data)
         return digest.hexdigest()
 
 

@@ -1,7 +1,20 @@
 """The planner: the whole flight at once (METHODS, section 8)."""
 
 from solver.planner.options import PlanOptions
+from solver.planner.preview import Ahead, PreviewOptions, PreviewStepper, Replan
+from solver.planner.preview_flight import PreviewFlight
 from solver.planner.verdict import Margins, Verdict
 from solver.planner.whole import Plan, plan
 
-__all__ = ["Margins", "Plan", "PlanOptions", "Verdict", "plan"]
+__all__ = [
+    "Ahead",
+    "Margins",
+    "Plan",
+    "PlanOptions",
+    "PreviewFlight",
+    "PreviewOptions",
+    "PreviewStepper",
+    "Replan",
+    "Verdict",
+    "plan",
+]

@@ -11,7 +11,6 @@ one that exceeds least and latest.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,34 +23,69 @@ from solver.step import clamp, null_interval
 Array = NDArray[np.float64]
 
 # Indices of the weights of the cost, one array
-RATES, ACCELERATIONS, SINGULARITY, RANGES, EXCESS, AT_END, HOMING = range(7)
-WEIGHTS = 7
+RATES, ACCELERATIONS, SINGULARITY, RANGES, EXCESS, AT_END, HOMING, ROOM, ROOM_TIME, ROOM_RATE = range(10)
+WEIGHTS = 10
 
-CELL = math.radians(6.0)  # of place along the curve
-RATE_CELL = math.radians(25.0)  # [rad/s] of rate along it
-PLACES = 60  # cells a turn
-RATE_CELLS = 24
+FASTEST = math.radians(480.0)  # [rad/s] along the self-motion; what is faster shares a cell
 WIDEST = math.radians(30.0)  # [rad] a slide in one stage where no limit bounds it
+UNLIMITED = 20.0  # [rad/s] of a frame without a rate limit, in the room
 CLEAR = 0.05  # beside sin^2 d2 + cos^2 d3 in the cost: where its rise ends
 NEAR_STOP = 0.02  # share of a range beside the room left in the cost
 
 
-@dataclass(frozen=True)
-class Way:
-    """Poses at the stages (k, 4) [rad], and the first stage over a limit (k where there is none)."""
+@kernel
+def room(horizontal: bool, table: Array, d: Array, ahead: float) -> float:
+    """The body rate that could be followed for `ahead` [s] from d, whatever its direction [rad/s].
 
-    poses: Array
-    over: int
-    cost: float
+    The frame rates that the rate limits and the ranges allow for so long make a box; the body rates J v of a box are a
+    zonotope, and the answer is the radius of the ball inside it: the least support over the normals of its faces, which
+    are the cross products of two columns of J. Zero at the singularity, and on an end stop that matters.
+    """
+    s2 = -math.sin(d[1]) if horizontal else math.sin(d[1])
+    c2 = math.cos(d[1])
+    s3 = math.sin(d[2])
+    c3 = math.cos(d[2])
+    # Columns of R4^T J, as the vertical rig has them.
+    column = ((c3 * s2, c2, s3 * s2), (-s3, 0.0, c3), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
+    low = np.empty(4)
+    high = np.empty(4)
+    for i in range(4):
+        low[i] = min(table[RATE, i], (d[i] - table[MIN, i]) / ahead, UNLIMITED)
+        high[i] = min(table[RATE, i], (table[MAX, i] - d[i]) / ahead, UNLIMITED)
+    if horizontal:
+        low[1], high[1] = high[1], low[1]
+    least = np.inf
+    for i in range(4):
+        for j in range(i):
+            a = column[i]
+            b = column[j]
+            x = a[1] * b[2] - a[2] * b[1]
+            y = a[2] * b[0] - a[0] * b[2]
+            z = a[0] * b[1] - a[1] * b[0]
+            size = math.sqrt(x * x + y * y + z * z)
+            if size < 1e-6:
+                continue
+            up = 0.0
+            down = 0.0
+            for k in range(4):
+                p = (x * column[k][0] + y * column[k][1] + z * column[k][2]) / size
+                if p > 0.0:
+                    up += p * high[k]
+                    down += p * low[k]
+                else:
+                    up -= p * low[k]
+                    down -= p * high[k]
+            least = min(least, up, down)
+    return max(least, 0.0)
 
 
 @kernel
-def place_cost(table: Array, weights: Array, d: Array) -> float:
-    """What a pose costs a second: nearness of the singularity and of the end stops, distance from home."""
+def place_cost(horizontal: bool, table: Array, weights: Array, d: Array) -> float:
+    """What a pose costs a second: little room, nearness of the singularity and of the end stops, distance from home."""
     s2 = math.sin(d[1])
     c3 = math.cos(d[2])
     clear = s2 * s2 + c3 * c3
-    total = weights[SINGULARITY] * -math.log((clear + CLEAR) / (2.0 + CLEAR))
+    total = -float(weights[SINGULARITY]) * math.log((clear + CLEAR) / (2.0 + CLEAR))
     for i in range(4):
         half = 0.5 * (table[MAX, i] - table[MIN, i])
         if half > 0.0 and half < np.inf:
@@ -59,14 +93,15 @@ def place_cost(table: Array, weights: Array, d: Array) -> float:
             u *= u
             total += weights[RANGES] * u * u / max(1.0 + NEAR_STOP - u, NEAR_STOP)
             off = d[i] - table[HOME, i]
-        else:
-            off = 0.0
-        total += weights[HOMING] * off * off
+            total += weights[HOMING] * off * off
+    if weights[ROOM] > 0.0:
+        share = weights[ROOM_RATE] / (room(horizontal, table, d, weights[ROOM_TIME]) + 0.1 * weights[ROOM_RATE])
+        total += weights[ROOM] * share * share
     return total
 
 
 @kernel
-def cell_of(d: Array, along: float) -> int:
+def cell_of(d: Array, along: float, places: int, speeds: int) -> int:
     """The cell of a pose with the rate `along` its self-motion [rad/s]."""
     c3 = math.cos(d[2])
     s2 = math.sin(d[1])
@@ -76,9 +111,9 @@ def cell_of(d: Array, along: float) -> int:
     else:
         chart = 2 if s2 >= 0.0 else 3
         angle = d[3]
-    place = int(math.floor(angle / CELL)) % PLACES
-    speed = min(max(int(math.floor(along / RATE_CELL)) + RATE_CELLS // 2, 0), RATE_CELLS - 1)
-    return (chart * PLACES + place) * RATE_CELLS + speed
+    place = math.floor(angle * places / TURN) % places
+    speed = math.floor((along / FASTEST + 1.0) * 0.5 * speeds)
+    return int((chart * places + place) * speeds + min(max(speed, 0), speeds - 1))
 
 
 @kernel
@@ -95,6 +130,8 @@ def search(
     first_cost: Array,
     slides: int,
     beam: int,
+    places: int,
+    speeds: int,
     poses: Array,
 ) -> tuple[float, int]:
     """poses (k, 4) <- the cheapest way found; returns (cost, first stage over a limit or k).
@@ -122,7 +159,7 @@ def search(
     new_cost = np.empty(room)
     new_parent = np.empty(room, np.int32)
     new_over = np.empty(room, np.bool_)
-    table_of = np.empty(4 * PLACES * RATE_CELLS, np.int32)
+    table_of = np.empty(4 * places * speeds, np.int32)
     lo = np.empty(4)
     hi = np.empty(4)
     tolerance = np.empty(4)
@@ -191,11 +228,11 @@ def search(
                     if out > 0.0:
                         out /= min(0.5 * table[ACCELERATION, i] * h * h, table[RATE, i] * h, 1.0)
                         over += max(0.0, out - 0.02)
-                dear += place_cost(table, weights, x)
+                dear += place_cost(horizontal, table, weights, x)
                 total = cost[b] + trust[stage] * (h * dear + weights[EXCESS] * min(over, 10.0) * h)
                 if over > 0.0:
                     total += trust[stage] * weights[EXCESS] * h
-                cell = cell_of(x, speed)
+                cell = cell_of(x, speed, places, speeds)
                 slot = table_of[cell]
                 if slot < 0:
                     slot = filled
@@ -224,7 +261,7 @@ def search(
     best = 0
     least = np.inf
     for b in range(count):
-        total = cost[b] + weights[AT_END] * trust[k - 1] * place_cost(table, weights, d[k - 1, b])
+        total = cost[b] + weights[AT_END] * trust[k - 1] * place_cost(horizontal, table, weights, d[k - 1, b])
         if total < least:
             least = total
             best = b

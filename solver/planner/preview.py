@@ -21,7 +21,7 @@ from solver.errors import MethodError
 from solver.kinematics import jacobian, null_vector
 from solver.limits import ACCELERATION, MAX, MIN, RATE, WEIGHT, limit_table
 from solver.methods.base import Block
-from solver.planner.horizon import WEIGHTS, search
+from solver.planner.horizon import search
 from solver.planner.nodes import fill_nodes, grid_circle
 from solver.planner.predict import Track, attitudes_ahead
 from solver.rig import Rig
@@ -54,6 +54,9 @@ from solver.tracking import (
 Array = NDArray[np.float64]
 
 START_GRID = 60  # nodes a turn among which a free start is chosen
+START_BEAM = 1000  # states kept a stage then: the way begins anywhere
+HOME_COST = 1e-3  # [1/(rad^2 s)]: decides where nothing else does
+ROOM_FOR = math.radians(60.0)  # [rad/s] body rate that room is measured against
 FIT_WINDOW = 0.1  # [s] of attitude that the present body rate is taken from
 
 
@@ -73,12 +76,16 @@ class PreviewOptions:
     delay_s: float = 0.0
     settling_s: float = 0.3
     stage_s: float = 0.05
+    places: int = 60
+    speeds: int = 40
     beam: int = 64  # states kept a stage
     slides: int = 5  # tried from each
     reserve: float = 0.1  # share of the rate and acceleration limits that a way leaves to what was not foreseen
     foresight_s: float = 1.0  # the weight of what is predicted falls by e over this
     singularity_cost: float = 0.3  # [1/s]; the next too
     range_cost: float = 1.0
+    room_cost: float = 0.3
+    room_s: float = 0.5
     rate_cost: float = 1.0
     acceleration_cost: float = 0.1
     excess_cost: float = 1e3
@@ -141,21 +148,23 @@ class Replan:
         o = self.options
         horizon = max(o.horizon_s, float(self.known_time[-1]) - self.clock)
         count = max(1, math.ceil(horizon / o.stage_s - 1e-9))
-        time = self.clock + o.stage_s * np.arange(count + 1)
+        time = np.array(self.clock + o.stage_s * np.arange(count + 1), dtype=np.float64)
         attitude = np.empty((count + 1, 3, 3))
         known = attitudes_ahead(
             self.known_time, self.known_attitude, time, FIT_WINDOW, o.settling_s, 0.5 * o.stage_s, attitude
         )
-        trust = np.exp(-np.maximum(0.0, time - time[known - 1]) / o.foresight_s)
-        weights = np.zeros(WEIGHTS)
-        weights[:] = (
-            o.rate_cost, o.acceleration_cost, o.singularity_cost, o.range_cost, o.excess_cost, o.end_cost, 1e-3,
+        trust: Array = np.exp(-np.maximum(0.0, time - time[known - 1]) / o.foresight_s)
+        weights = np.array(
+            [
+                o.rate_cost, o.acceleration_cost, o.singularity_cost, o.range_cost, o.excess_cost, o.end_cost,
+                HOME_COST, o.room_cost, o.room_s, ROOM_FOR,
+            ]
         )  # fmt: skip
         pose = np.empty((count + 1, 4))
         first_cost = np.zeros(len(self.pose))
         _, over = search(
             self.horizontal, self.table, weights, time, attitude, trust, self.past, self.pose, self.rate, first_cost,
-            o.slides, o.beam, pose,
+            o.slides, o.beam if len(self.pose) == 1 else START_BEAM, o.places, o.speeds, pose,
         )  # fmt: skip
         step = np.diff(pose, axis=0) / o.stage_s
         rate = np.empty_like(pose)
@@ -218,7 +227,7 @@ def preview_block(
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 
-    gains: avoidance, centring, homing (without a way), recovery, following. As `solver.methods.exact`, but for the wish.
+    gains: avoidance, centring, homing (without a way), recovery, following. `exact_block`, but for the wish.
     """
     work = np.empty((ROWS, 4))
     J = np.empty((3, 4))
@@ -277,7 +286,10 @@ class PreviewStepper:
         self.way = Ahead(0, np.empty(0), np.empty((0, 4)), np.empty((0, 4)), 0, math.inf)
 
     def offer(self, time: Array, attitude: Array) -> None:
-        """The source's preview: time (m,) [s] increasing, attitude (m, 3, 3). Replaces what was offered from there on."""
+        """The source's preview: time (m,) [s] increasing, attitude (m, 3, 3); what it said of those times is void.
+
+        Raises `InputError` where the times do not increase.
+        """
         if len(time):
             self._track.tell(time, attitude)
 

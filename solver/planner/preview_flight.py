@@ -68,5 +68,3 @@ class PreviewFlight:
     @property
     def _told(self) -> float:
         return float(self._time[self._offered - 1]) if self._offered else -math.inf
-
-

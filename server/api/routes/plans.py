@@ -24,7 +24,7 @@ from server.api.wire_plans import (
 )
 from server.plan_folder import read_plan, rig_hash
 from server.store.errors import TransitionError
-from server.store.options import PLAN, PLAN_SOURCE, method_options, option_defaults
+from server.store.options import PLAN, PLAN_SOURCE, PREVIEW, PREVIEW_SOURCE, method_options, option_defaults
 from server.store.plans import UNFINISHED
 from server.store.tables import PlanRow
 from server.store.thin import thin
@@ -37,8 +37,11 @@ router = APIRouter(tags=["plans"])
 @router.get("/methods")
 def list_methods() -> list[MethodOut]:
     """The methods that plans, solves and comparisons may name."""
-    whole = MethodOut(name=PLAN, source=PLAN_SOURCE, claims_limits=True, options=option_defaults(PLAN))
-    return [whole] + [
+    ahead = [
+        MethodOut(name=name, source=source, claims_limits=True, options=option_defaults(name))
+        for name, source in ((PLAN, PLAN_SOURCE), (PREVIEW, PREVIEW_SOURCE))
+    ]
+    return ahead + [
         MethodOut(name=m.name, source=m.source, claims_limits=m.claims_limits, options=option_defaults(m.name))
         for m in METHODS.values()
     ]
