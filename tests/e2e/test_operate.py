@@ -185,7 +185,7 @@ def test_a_live_source_is_followed_until_it_is_gone(page: Page, server: Server, 
     console.open()
     console.take_control()
     console.give("connect", "idle")
-    page.get_by_text("Fly a live source").click()
+    page.get_by_role("button", name="Live source").click()
     page.get_by_label("Live method").select_option("exact")
     page.get_by_role("button", name="Load live").click()
     console.expect_state("ready")

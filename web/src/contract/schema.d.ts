@@ -2416,6 +2416,52 @@ export interface components {
             lease?: components["schemas"]["LeaseToken"] | null;
         };
         /**
+         * StopNow
+         * @description Live only: the lanes of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; handled at once.
+         */
+        StopNow: {
+            /**
+             * Client
+             * @description As the header X-Fullpose-Client, which it replaces
+             * @default null
+             */
+            client: string | null;
+            /**
+             * Type
+             * @enum {string}
+             */
+            type: "stop" | "estop";
+        };
+        /**
+         * Stopped
+         * @description The answer to stop and estop: what the session was and is.
+         */
+        Stopped: {
+            /**
+             * Command
+             * @enum {string}
+             */
+            command: "stop" | "estop";
+            /** Revision */
+            revision: number;
+            /**
+             * State After
+             * @enum {string}
+             */
+            state_after: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            /**
+             * State Before
+             * @enum {string}
+             */
+            state_before: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            /**
+             * Type
+             * @default stopped
+             * @constant
+             */
+            type: "stopped";
+        };
+        /**
          * StreamProblem
          * @description A message of the client that was not understood; the stream goes on.
          */
