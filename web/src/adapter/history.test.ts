@@ -51,6 +51,16 @@ it("keeps what is before the time a replay is set back to", () => {
   expect([...history.channel(CHANNEL.measured)]).toEqual([1, 2, 2.5]);
 });
 
+it("does not join what is after a break", () => {
+  const history = new History(5);
+  history.break();
+  for (const time of [1, 2]) history.push(sample(time));
+  history.break();
+  history.push(sample(9));
+  expect([...history.channel(CHANNEL.measured)]).toEqual([1, 2, NaN, 9]);
+  expect([...history.time()]).toEqual([1, 2, 2.000001, 9]);
+});
+
 it("has no channel beyond its last", () => {
   expect(() => new History(2).channel(18)).toThrow(RangeError);
 });

@@ -40,6 +40,17 @@ export class History {
     if (this.length > this.capacity) this.#start++;
   }
 
+  /** Ends the curves here: what comes next is not joined to them. */
+  break(): void {
+    const last = this.#time[this.#end - 1];
+    if (this.length === 0 || last === undefined) return;
+    if (this.#end === this.#time.length) this.#slideBack();
+    this.#time[this.#end] = last + 1e-6;
+    for (const column of this.#channels) column[this.#end] = NaN;
+    this.#end++;
+    if (this.length > this.capacity) this.#start++;
+  }
+
   /** Times of the samples [s]. */
   time(): Float64Array {
     return this.#time.subarray(this.#start, this.#end);

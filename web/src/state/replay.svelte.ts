@@ -23,6 +23,7 @@ export class Replay implements Feed {
   readonly history = new History(HISTORY);
   readonly #stream: Stream;
   #opened = false;
+  #sought = false;
 
   readonly session = $derived(this.link.session);
   readonly duration = $derived(this.of?.duration_s ?? 0);
@@ -46,6 +47,7 @@ export class Replay implements Feed {
 
   seek = (at: number): void => {
     this.at = Math.min(this.duration, Math.max(0, at));
+    this.#sought = true;
     this.#stream.control({ type: "seek", time_s: this.at });
   };
 
@@ -65,6 +67,8 @@ export class Replay implements Feed {
   }
 
   #batch(batch: Batch): void {
+    if (this.#sought) this.history.break();
+    this.#sought = false;
     for (let row = 0; row < batch.count; row++) this.history.push(sampleAt(batch, row));
     this.latest = sampleAt(batch, batch.count - 1);
     this.at = Math.max(0, this.latest.wallS - (this.of?.started ?? this.latest.wallS));
