@@ -107,7 +107,7 @@ class RigHost:
             if time.monotonic() > deadline:
                 raise HostError(f"rig process {self._pid} of {self.name} does not end")
         while not self._dead:  # it gives its lock up a little before it is gone
-            await asyncio.sleep(0.005)
+            await self._changed.wait()
         await self._launcher.reaped(self._pid)
 
     # --- commands ---
