@@ -1,4 +1,4 @@
-"""What the clients of one stream share: the newest sample, read and encoded once for many, and turns to be sent to.
+"""What the clients of one stream share: newest sample and session, encoded once for many, and turns to be sent to.
 
 Two hundred clients at 30 frames a second are 6000 frames a second: most of a frame is the same for all who are due
 within a few milliseconds, and no request (an E-stop) may wait until all of them have been served.
@@ -16,6 +16,7 @@ from server.api.wire_stream import Encoding
 from server.runtime.telemetry import SAMPLE, Samples
 
 FRESH_S = 0.004  # how old a sample that is sent as the newest may be at most
+SESSION_FRESH_S = 0.05  # the same of a session that has not changed
 AT_ONCE = 4  # clients that are sent to in one round of the event loop; then it looks for requests
 
 _encode = msgspec.json.encode
@@ -46,6 +47,7 @@ class FrameSource:
         self._rows: Samples | None = None
         self._seq = 0
         self._bodies: dict[Encoding, bytes] = {}
+        self._session: tuple[int, float, str] | None = None  # revision, good until, message
 
     def newest(self, encoding: Encoding, after: int) -> tuple[int, bytes] | None:
         """Sequence and body of the newest sample in an encoding, read anew for who has had `after`; None before any."""
@@ -62,6 +64,13 @@ class FrameSource:
         if body is None:
             body = self._bodies[encoding] = encoded(self._rows, encoding)
         return self._seq, body
+
+    def session(self, revision: int, make: Callable[[int], str]) -> str:
+        """The message of the session's revision, made anew where it is not the last one or no longer fresh."""
+        now = self._clock()
+        if self._session is None or self._session[0] != revision or now >= self._session[1]:
+            self._session = (revision, now + SESSION_FRESH_S, make(revision))
+        return self._session[2]
 
 
 def encoded(rows: Samples, encoding: Encoding) -> bytes:

@@ -31,8 +31,8 @@ class Source(Protocol):
     async def samples(self) -> FrameSource:
         """Where the samples are, once there are some."""
 
-    def changes(self) -> AsyncIterator[Wire]:
-        """The session as it is now, then each change of it."""
+    def changes(self) -> AsyncIterator[str]:
+        """The session as it is now, then each change of it: messages, encoded."""
 
     def control(self, message: Playback) -> Wire:
         """Do what only a replay can, and answer. Raises `ApiError`."""
@@ -119,7 +119,7 @@ class StreamClient:
 
     async def _sessions(self) -> None:
         async for change in self._source.changes():
-            await self._socket.send_text(change.model_dump_json())
+            await self._socket.send_text(change)
 
     async def _telemetry(self, wanted: Subscribe, *, again: bool) -> None:
         source = await self._source.samples()

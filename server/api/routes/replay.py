@@ -80,7 +80,7 @@ class _Run:
         self._begin()
         return FrameSource(self._playback, fresh_s=0.0)
 
-    async def changes(self) -> AsyncIterator[Wire]:
+    async def changes(self) -> AsyncIterator[str]:
         self._begin()
         shown: tuple[int, str] | None = None
         told: tuple[bool, float] | None = None
@@ -88,11 +88,12 @@ class _Run:
             status = self._status()
             if (now := (status.playing, status.factor)) != told:
                 told = now
-                yield status
+                yield status.model_dump_json()
             session = self._session()
             if (state := (session.revision, session.state)) != shown:
                 shown = state
-                yield SessionChanged(revision=session.revision, server_time=time.time(), session=session)
+                changed = SessionChanged(revision=session.revision, server_time=time.time(), session=session)
+                yield changed.model_dump_json()
             await asyncio.sleep(LOOK_S)
 
     def control(self, message: Playback) -> Wire:

@@ -16,6 +16,7 @@ from server.api.stream_client import StreamClient
 from server.api.wire import Wire
 from server.api.wire_session import SessionOut
 from server.api.wire_stream import Hello, Playback, SessionChanged, StopNow, Stopped
+from server.runtime.host import RigHost
 from server.runtime.telemetry import SAMPLE
 
 router = APIRouter(tags=["stream"])
@@ -45,14 +46,15 @@ class _Rig:
         )
 
     async def samples(self) -> FrameSource:
-        host = await self._services.hosts.wait(self._rig)
-        return self._services.frames.setdefault(self._rig, FrameSource(host))
+        return self._frames(await self._services.hosts.wait(self._rig))
 
-    async def changes(self) -> AsyncIterator[Wire]:
+    async def changes(self) -> AsyncIterator[str]:
         host = await self._services.hosts.wait(self._rig)
+        frames = self._frames(host)
         while True:
+            await frames.turns.turn()
             revision = host.revision
-            yield SessionChanged(revision=revision, server_time=time.time(), session=self._session())
+            yield frames.session(revision, self._changed)
             await host.wait_change(revision)
 
     def control(self, message: Playback) -> Wire:
@@ -65,6 +67,13 @@ class _Rig:
             return Stopped.model_validate((await done).model_dump())
 
         return answered()
+
+    def _frames(self, host: RigHost) -> FrameSource:
+        return self._services.frames.setdefault(self._rig, FrameSource(host))
+
+    def _changed(self, revision: int) -> str:
+        changed = SessionChanged(revision=revision, server_time=time.time(), session=self._session())
+        return changed.model_dump_json()
 
     def _session(self) -> SessionOut:
         return session_out(self._services.hosts, self._rig, self._services.settings.rig_rate_hz)

@@ -4,7 +4,7 @@ import asyncio
 
 import numpy as np
 
-from server.api.frame_source import AT_ONCE, FrameSource, Turns
+from server.api.frame_source import AT_ONCE, SESSION_FRESH_S, FrameSource, Turns
 from server.runtime.telemetry import SAMPLE, Samples
 
 
@@ -42,6 +42,22 @@ def test_clients_within_a_moment_share_a_reading_and_nobody_gets_one_twice() -> 
     later = source.newest("json", 0)
     assert later is not None
     assert later[0] == 3
+
+
+def test_a_session_is_encoded_once_for_many_and_anew_when_it_changes() -> None:
+    now = 0.0
+    made: list[int] = []
+
+    def make(revision: int) -> str:
+        made.append(revision)
+        return f"message {len(made)}"
+
+    source = FrameSource(Ticking(), clock=lambda: now)
+    assert [source.session(7, make) for _ in range(3)] == ["message 1"] * 3
+    assert source.session(8, make) == "message 2"
+    now = SESSION_FRESH_S
+    assert source.session(8, make) == "message 3"  # of the same revision: lease and health go on
+    assert made == [7, 8, 8]
 
 
 def ticking_bytes(seq: int) -> bytes:
