@@ -116,12 +116,13 @@ async def measure(times: int, viewers: int) -> None:
                 span = 12.0 * times + 30.0
                 with loaded(port, RIG, count, span, upload=bool(count), plan=bool(count)):
                     await asyncio.sleep(5.0 if count else 0.0)
-                    ways = {
-                        "flag": lambda: host.estop("bench"),
-                        "HTTP": lambda: ask(port),
-                        "WebSocket": OpenStream(port).ask,
+                    ways: dict[str, Callable[[], Callable[[], None]]] = {
+                        "flag": lambda: lambda: host.estop("bench"),
+                        "HTTP": lambda: lambda: ask(port),
+                        "WebSocket": lambda: OpenStream(port).ask,
                     }
-                    for way, over in ways.items():
+                    for way, make in ways.items():
+                        over = make()
                         taken = [await stop_once(host, plan, over, (-1.0) ** k) for k in range(times)]
                         print(row(way + name, taken), flush=True)
             await host.close(stop_rig=False)
