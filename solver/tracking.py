@@ -306,3 +306,11 @@ def new_state(pose: Array, code: int) -> Array:
     state[PHASE] = FRESH
     state[CODE] = code
     return state
+
+
+def stand(state: Array, dt: float) -> None:
+    """The flight stands at its pose since `dt` [s] before time 0: the rate of its first sample is no longer free."""
+    state[4:8] = 0.0
+    state[PAST] = dt
+    state[CLOCK] = 0.0
+    state[PHASE] = MOVING

@@ -61,7 +61,6 @@ class LiveStep:
 
     def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
         # Heavier than the rest of the rig process: only where it is used.
-        from solver import tracking as solver_tracking
         from solver.methods import METHODS
 
         if settings.method not in METHODS:
@@ -71,7 +70,6 @@ class LiveStep:
             raise LiveError(f"method {settings.method} does not keep the limits: it cannot fly a live source")
         self._rig = rig
         self._dt = dt
-        self._tracking = solver_tracking
         try:
             self._options = msgspec.convert(settings.options, self._method.options)
             self.begin(rig.home)
@@ -83,16 +81,15 @@ class LiveStep:
 
     def begin(self, pose: Array) -> None:
         """From rest at `pose` (4,) [rad]."""
+        from solver.methods.base import LiveStepper  # with it come all methods
+
         self._C = np.empty((1, 3, 3))
         payload_attitude(self._rig.axes, pose, self._C[0])
-        self._stepper = self._method.stepper(self._rig, self._options, pose, self._C[0].copy())
-        # A stepper takes a flight that may begin in motion: its first rate is free. Ours is known, and zero.
-        state: Array = self._stepper._state  # type: ignore[attr-defined]  # of every method that claims limits
-        state[4:8] = 0.0
-        tracking = self._tracking
-        state[tracking.PAST] = self._dt
-        state[tracking.PHASE] = tracking.MOVING
-        state[tracking.CLOCK] = 0.0
+        stepper = self._method.stepper(self._rig, self._options, pose, self._C[0].copy())
+        if not isinstance(stepper, LiveStepper):
+            raise LiveError(f"method {self._method.name} cannot take over a rig that stands")
+        stepper.begin_at_rest(self._dt)
+        self._stepper = stepper
         self._tick = 1
         self._time = np.zeros(1)
 

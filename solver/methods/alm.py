@@ -43,6 +43,7 @@ from solver.tracking import (
     new_state,
     outermost_code,
     prepare,
+    stand,
     wish,
 )
 
@@ -283,6 +284,10 @@ class AlmStepper:
         )
         self._state = new_state(*start_pose(rig, attitude, start))
         self._target = np.array(attitude, order="C")
+
+    def begin_at_rest(self, dt: float) -> None:
+        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
+        stand(self._state, dt)
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""

@@ -6,7 +6,7 @@ advances over m samples (m = 1 for live use, more for a file), so files, streams
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,15 @@ class Stepper(Protocol):
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s] increasing from call to call, attitude (m, 3, 3) body from reference."""
+        ...
+
+
+@runtime_checkable
+class LiveStepper(Stepper, Protocol):
+    """What the methods that claim the limits have too, to take over a rig that stands."""
+
+    def begin_at_rest(self, dt: float) -> None:
+        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
         ...
 
 

@@ -23,7 +23,7 @@ from solver.rig import Rig
 from solver.solution import EXACT
 from solver.start import start_pose
 from solver.step import solve_symmetric, squared_damping
-from solver.tracking import CLOCK, CODE, FRESH, HI, LO, PHASE, ROWS, advance, goal, new_state, prepare
+from solver.tracking import CLOCK, CODE, FRESH, HI, LO, PHASE, ROWS, advance, goal, new_state, prepare, stand
 
 Array = NDArray[np.float64]
 
@@ -212,6 +212,10 @@ class ClampedStepper:
         self._parameters = np.array([options.tolerance, float(options.max_iterations), options.recovery])
         self._state = new_state(*start_pose(rig, attitude, start))
         self._target = np.array(attitude, order="C")
+
+    def begin_at_rest(self, dt: float) -> None:
+        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
+        stand(self._state, dt)
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""

@@ -31,6 +31,7 @@ from solver.tracking import (
     goal_from,
     new_state,
     prepare,
+    stand,
     wish,
 )
 
@@ -125,6 +126,10 @@ class ExactStepper:
         self._gains = np.array([options.avoidance, options.centring, options.homing, options.recovery])
         self._state = new_state(*start_pose(rig, attitude, start))
         self._target = np.array(attitude, order="C")
+
+    def begin_at_rest(self, dt: float) -> None:
+        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
+        stand(self._state, dt)
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""

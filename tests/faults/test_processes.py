@@ -82,7 +82,8 @@ def test_a_killed_rig_process_is_said_at_once_and_its_record_is_whole(tmp_path: 
             last = shared.ring.head
             deadline = time.monotonic() + 60.0
             while not (again := host.snapshot()).health.rig_alive and time.monotonic() < deadline:
-                await asyncio.sleep(0.05)
+                with contextlib.suppress(TimeoutError):  # a heartbeat may be late, and nothing changes when it comes
+                    await asyncio.wait_for(host.wait_change(again.revision), 0.2)
             assert again.health.rig_pid != pid
             assert again.state == "disconnected"
             assert again.revision > told.revision
@@ -113,7 +114,8 @@ def test_a_killed_recorder_loses_no_more_than_a_chunk_and_is_replaced_at_rest(tm
             os.kill(int(shared.header["recorder_pid"][0]), signal.SIGKILL)
             snapshot = await operator.until("armed", "faulted")
             assert snapshot.state == "armed"  # the loop never stops for the record
-            assert [a.code for a in snapshot.alarms] == ["recorder_lost"]
+            codes = [a.code for a in snapshot.alarms]
+            assert [code for code in codes if code != "lateness"] == ["recorder_lost"]  # a starved machine may be late
             assert not snapshot.health.recorder.alive
             await operator.must("disarm")
             refused = await operator.say("arm")
