@@ -62,7 +62,7 @@ def compare(name: str, methods: list[str], peers: list[str], repeats: int) -> No
     first = solve(at, C, rig, "exact", start=start).angles[0]
     print(f"\n{name} on {rig.name}, {len(at)} samples at {scenario.rate:g} Hz")
     theirs = dict(race(peers, rig, scenario.rate, C[:PEER_SAMPLES], first, repeats))
-    minks = [float(np.median(run[0])) for peer, run in theirs.items() if peer.startswith("mink")]
+    minks = [float(np.nanmedian(run[0])) for peer, run in theirs.items() if peer.startswith("mink")]
     mink_median = min(minks, default=math.nan)
     print(f"{'':24}" + "".join(f"{word:>12}" for word in HEAD))
     for method in methods:
@@ -97,7 +97,7 @@ def variant(text: str) -> tuple[str, Any]:
 def _row(
     name: str, times: Array, mink_median: float, rig: Rig, at: Array, angles: Array, C: Array, iterations: str
 ) -> None:
-    median, p99 = np.percentile(times, [50, 99]) * 1e6
+    median, p99 = np.nanpercentile(times, [50, 99]) * 1e6
     error, matrix_error = attitude_errors(payload_attitudes(rig, angles), C)
     result = verify(at, angles, rig)
     cells = [

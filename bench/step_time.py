@@ -61,7 +61,7 @@ def main() -> None:
     start = solve(at[:1], C[:1], rig, methods[0]).angles[0]
     # First the peers: a row's ratio is to the first of them, the quickest.
     peers = list(race(["mink"], rig, RATE_HZ, C[short], start, arguments.repeats))
-    quickest = float(np.median(peers[0][1][0]))
+    quickest = float(np.nanmedian(peers[0][1][0]))
     print(f"{arguments.flight.name} on {rig.name}, {len(at)} samples at {RATE_HZ:g} Hz, {machine()}")
     head = ("median us", "p99 us", "x of mink", "matrix error", "violations")
     print(f"{'':24}" + "".join(f"{word:>14}" for word in head))
@@ -92,7 +92,7 @@ def _one_a_call(method: str, rig: Rig, at: Array, C: Array) -> tuple[Array, Arra
 
 
 def _row(name: str, times: Array, quickest: float, rig: Rig, at: Array, angles: Array, C: Array) -> None:
-    median, p99 = np.percentile(times, [50, 99])
+    median, p99 = np.nanpercentile(times, [50, 99])
     error = attitude_errors(payload_attitudes(rig, angles), C)[1].max()
     cells = [f"{median * 1e6:.2f}", f"{p99 * 1e6:.2f}", f"{quickest / median:.1f}", f"{error:.1e}"]
     cells.append(str(len(verify(at, angles, rig).violations)))

@@ -35,7 +35,7 @@ def squared_damping(volume: float) -> float:
     return MAX_DAMPING * MAX_DAMPING * (1.0 - ratio * ratio)
 
 
-@inner
+@inlined
 def solve_symmetric(A: Array, b: Array, n: int) -> bool:
     """b <- A^-1 b by A = L D L^T, in place in the lower triangle of A; false where A is not positive definite. n <= 4.
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import inner, kernel
+from solver._jit import inlined, inner, kernel
 from solver.errors import MethodError
 from solver.kinematics import four_axis_pose, rotation_error
 from solver.limits import WEIGHT, limit_table
@@ -94,13 +94,14 @@ class AlmOptions:
                 raise MethodError(f"option {name} = {getattr(self, name)!r}: expected {least:g} to {most:g}")
 
 
-# Rows of the multipliers' work array (MULTIPLIER_ROWS, 5): lambda, mu of both sides, K with b as its last column
-EQUALITY, LOWER, UPPER, SYSTEM = 0, 1, 2, 3
-MULTIPLIER_ROWS = 7
+# Rows of the multipliers' work array (MULTIPLIER_ROWS, 5): lambda, mu of both sides, then 4 x 4 with a column on the
+# right: J^T J and J^T e, K and b
+EQUALITY, LOWER, UPPER, PRODUCTS, SYSTEM = 0, 1, 2, 3, 7
+MULTIPLIER_ROWS = 11
 MOST_CHANGES = 5  # of the active bounds between two updates of the multipliers
 
 
-@inner
+@inlined
 def active_bounds(room: Array, r: float, lo: Array, hi: Array, s: Array) -> int:
     """Base 3, a digit a frame: no bound's term in M counts at s, the lower one's does (1), the upper one's (2)."""
     active = 0
@@ -124,6 +125,7 @@ def multiplier_step(
     """
     r = tuning[0]
     residual = tuning[3]
+    P = room[PRODUCTS : PRODUCTS + 4]
     K = room[SYSTEM : SYSTEM + 4]
     b = room[SYSTEM : SYSTEM + 4, 4]
     for i in range(5):
@@ -132,16 +134,19 @@ def multiplier_step(
         room[UPPER, i] = 0.0
     for i in range(4):
         s[i] = 0.0
+        P[i, 4] = J[0, i] * e[0] + J[1, i] * e[1] + J[2, i] * e[2]
+        for j in range(i + 1):
+            P[i, j] = J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j]
     active = active_bounds(room, r, lo, hi, s)
     changes = 0
     for iteration in range(1, int(tuning[4]) + 1):
         rest = active
         for i in range(4):
-            b[i] = weight[i] * g[i]
+            b[i] = weight[i] * g[i] + r * P[i, 4]
             for k in range(3):
-                b[i] += J[k, i] * (r * e[k] - room[EQUALITY, k])
+                b[i] -= J[k, i] * room[EQUALITY, k]
             for j in range(i + 1):
-                K[i, j] = r * (J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j])
+                K[i, j] = r * P[i, j]
             K[i, i] += weight[i]
             if rest % 3 == 1:
                 K[i, i] += r
