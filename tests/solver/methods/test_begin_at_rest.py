@@ -24,8 +24,7 @@ def test_from_rest_toward_an_attitude_far_away(name: str) -> None:
     assert isinstance(stepper, LiveStepper)
     stepper.begin_at_rest(DT)
     angles = [pose]
-    for tick in range(1, 400):
-        angles.append(stepper.block(np.array([tick * DT]), there).angles[0])
+    angles.extend(stepper.block(np.array([tick * DT]), there).angles[0] for tick in range(1, 400))
     rate = np.diff(angles, axis=0, prepend=[pose]) / DT
     assert (np.abs(rate) <= rig.max_rate * (1 + 1e-6)).all()
     acceleration = np.diff(rate, axis=0) / DT
