@@ -26,8 +26,11 @@ Array = NDArray[np.float64]
 RATES, ACCELERATIONS, SINGULARITY, RANGES, EXCESS, AT_END, HOMING, ROOM, ROOM_TIME, ROOM_RATE = range(10)
 WEIGHTS = 10
 
-FASTEST = math.radians(480.0)  # [rad/s] along the self-motion; what is faster shares a cell
+PLACES = 90  # cells a turn of the place along the curve
+SPEEDS = 60  # cells of the rate along it, between -FASTEST and FASTEST: finer than one stage can change it
+FASTEST = math.radians(480.0)  # [rad/s]; what is faster shares the last cell
 WIDEST = math.radians(30.0)  # [rad] a slide in one stage where no limit bounds it
+FREE_SLIDES = 8  # times as many slides where the first rate is free
 UNLIMITED = 20.0  # [rad/s] of a frame without a rate limit, in the room
 CLEAR = 0.05  # beside sin^2 d2 + cos^2 d3 in the cost: where its rise ends
 NEAR_STOP = 0.02  # share of a range beside the room left in the cost
@@ -101,7 +104,7 @@ def place_cost(horizontal: bool, table: Array, weights: Array, d: Array) -> floa
 
 
 @kernel
-def cell_of(d: Array, along: float, places: int, speeds: int) -> int:
+def cell_of(d: Array, along: float) -> int:
     """The cell of a pose with the rate `along` its self-motion [rad/s]."""
     c3 = math.cos(d[2])
     s2 = math.sin(d[1])
@@ -111,9 +114,9 @@ def cell_of(d: Array, along: float, places: int, speeds: int) -> int:
     else:
         chart = 2 if s2 >= 0.0 else 3
         angle = d[3]
-    place = math.floor(angle * places / TURN) % places
-    speed = math.floor((along / FASTEST + 1.0) * 0.5 * speeds)
-    return int((chart * places + place) * speeds + min(max(speed, 0), speeds - 1))
+    place = math.floor(angle * PLACES / TURN) % PLACES
+    speed = math.floor((along / FASTEST + 1.0) * 0.5 * SPEEDS)
+    return int((chart * PLACES + place) * SPEEDS + min(max(speed, 0), SPEEDS - 1))
 
 
 @kernel
@@ -130,8 +133,6 @@ def search(
     first_cost: Array,
     slides: int,
     beam: int,
-    places: int,
-    speeds: int,
     poses: Array,
 ) -> tuple[float, int]:
     """poses (k, 4) <- the cheapest way found; returns (cost, first stage over a limit or k).
@@ -153,13 +154,15 @@ def search(
             v[b, i] = first_rate[b, i]
         cost[b] = first_cost[b]
     count = m
-    room = width * (slides + 1)
-    new_d = np.empty((room, 4))
-    new_v = np.empty((room, 4))
-    new_cost = np.empty(room)
-    new_parent = np.empty(room, np.int32)
-    new_over = np.empty(room, np.bool_)
-    table_of = np.empty(4 * places * speeds, np.int32)
+    # A first rate that is free is chosen finely: inertia keeps it for a while.
+    begin_slides = slides if past > 0.0 else FREE_SLIDES * slides
+    space = max(width * (slides + 1), m * (begin_slides + 1))
+    new_d = np.empty((space, 4))
+    new_v = np.empty((space, 4))
+    new_cost = np.empty(space)
+    new_parent = np.empty(space, np.int32)
+    new_over = np.empty(space, np.bool_)
+    table_of = np.empty(4 * PLACES * SPEEDS, np.int32)
     lo = np.empty(4)
     hi = np.empty(4)
     tolerance = np.empty(4)
@@ -206,9 +209,10 @@ def search(
                 z_max = min(z_max, coast + WIDEST)
             else:
                 coast = clamp(coast, z_min, z_max)
-            tries = slides if inside else 0
+            most = begin_slides if stage == 1 else slides
+            tries = most if inside else 0
             for t in range(-1, tries):
-                z = coast if t < 0 else z_min + (z_max - z_min) * t / (slides - 1)
+                z = coast if t < 0 else z_min + (z_max - z_min) * t / (most - 1)
                 for i in range(4):
                     x[i] = y[i] + n[i] * z
                 project(horizontal, attitude[stage], x, x)
@@ -232,7 +236,7 @@ def search(
                 total = cost[b] + trust[stage] * (h * dear + weights[EXCESS] * min(over, 10.0) * h)
                 if over > 0.0:
                     total += trust[stage] * weights[EXCESS] * h
-                cell = cell_of(x, speed, places, speeds)
+                cell = cell_of(x, speed)
                 slot = table_of[cell]
                 if slot < 0:
                     slot = filled

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from solver._jit import kernel
 from solver.errors import MethodError
 from solver.kinematics import jacobian, null_vector
-from solver.limits import ACCELERATION, MAX, MIN, RATE, WEIGHT, limit_table
+from solver.limits import ACCELERATION, MAX, MIN, WEIGHT, limit_table
 from solver.methods.base import Block
 from solver.planner.horizon import search
 from solver.planner.nodes import fill_nodes, grid_circle
@@ -76,16 +76,14 @@ class PreviewOptions:
     delay_s: float = 0.0
     settling_s: float = 0.3
     stage_s: float = 0.05
-    places: int = 60
-    speeds: int = 40
-    beam: int = 64  # states kept a stage
+    beam: int = 96  # states kept a stage
     slides: int = 5  # tried from each
-    reserve: float = 0.1  # share of the rate and acceleration limits that a way leaves to what was not foreseen
+    reserve: float = 0.1  # share of the acceleration limits that a way leaves to what was not foreseen
     foresight_s: float = 1.0  # the weight of what is predicted falls by e over this
     singularity_cost: float = 0.3  # [1/s]; the next too
     range_cost: float = 1.0
-    room_cost: float = 0.3
-    room_s: float = 0.5
+    room_cost: float = 1.0  # [1/s] where there is room for a body rate of 54 deg/s in any direction, and no more
+    room_s: float = 0.5  # [s] that the room must last
     rate_cost: float = 1.0
     acceleration_cost: float = 0.1
     excess_cost: float = 1e3
@@ -96,11 +94,11 @@ class PreviewOptions:
     recovery: float = 0.5
 
     def __post_init__(self) -> None:
-        for name in ("preview_s", "delay_s", "settling_s", "singularity_cost", "range_cost", "rate_cost",
+        for name in ("preview_s", "delay_s", "settling_s", "singularity_cost", "range_cost", "room_cost", "rate_cost",
                      "acceleration_cost", "excess_cost", "end_cost", "avoidance", "centring"):  # fmt: skip
             if not 0.0 <= getattr(self, name) < np.inf:
                 raise MethodError(f"option {name} = {getattr(self, name)!r}: expected a number, 0 or more")
-        for name in ("horizon_s", "replan_s", "stage_s", "foresight_s", "following"):
+        for name in ("horizon_s", "replan_s", "stage_s", "foresight_s", "room_s", "following"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise MethodError(f"option {name} = {getattr(self, name)!r}: expected a number above 0")
         if not 0.0 <= self.reserve < 1.0:
@@ -164,15 +162,31 @@ class Replan:
         first_cost = np.zeros(len(self.pose))
         _, over = search(
             self.horizontal, self.table, weights, time, attitude, trust, self.past, self.pose, self.rate, first_cost,
-            o.slides, o.beam if len(self.pose) == 1 else START_BEAM, o.places, o.speeds, pose,
+            o.slides, o.beam if len(self.pose) == 1 else START_BEAM, pose,
         )  # fmt: skip
-        step = np.diff(pose, axis=0) / o.stage_s
-        rate = np.empty_like(pose)
-        rate[0] = self.rate[0] if self.past > 0.0 else step[0]
-        rate[1:-1] = 0.5 * (step[1:] + step[:-1])
-        rate[-1] = step[-1]
+        knots, position, rate = smooth_way(time, pose, self.rate[0] if self.past > 0.0 else None)
         lost_at = float(time[over]) if over <= count else math.inf
-        return Ahead(self.number, time, pose, rate, known, lost_at)
+        return Ahead(self.number, knots, position, rate, known, lost_at)
+
+
+def smooth_way(time: Array, pose: Array, rate: Array | None) -> tuple[Array, Array, Array]:
+    """(time, pose, rate) twice as dense, with the accelerations that the search reckoned with.
+
+    time (k,) [s] evenly spaced, pose (k, 4) [rad]; rate (4,) [rad/s] at the first, None: as over the first stage. A
+    stage's mean rate is the rate at its middle; between the middles the rate runs straight, which makes the curve pass
+    the poses within an eighth of a stage's change of acceleration times its square.
+    """
+    h = 0.5 * float(time[1] - time[0])
+    mean = np.diff(pose, axis=0) / (2.0 * h)
+    v = np.empty((2 * len(mean) + 1, 4))
+    v[1::2] = mean
+    v[2:-1:2] = 0.5 * (mean[1:] + mean[:-1])
+    v[0] = mean[0] if rate is None else rate
+    v[-1] = mean[-1]
+    x = np.empty_like(v)
+    x[0] = pose[0]
+    x[1:] = pose[0] + np.cumsum(0.5 * h * (v[1:] + v[:-1]), axis=0)
+    return time[0] + h * np.arange(len(v)), x, v
 
 
 @kernel
@@ -275,7 +289,7 @@ class PreviewStepper:
         self._rig, self._options = rig, options
         self._table = limit_table(rig)
         self._tight = limit_table(rig)
-        self._tight[[RATE, ACCELERATION]] *= 1.0 - options.reserve
+        self._tight[ACCELERATION] *= 1.0 - options.reserve
         self._gains = np.array([options.avoidance, options.centring, 0.0, options.recovery, options.following])
         self._free = start is None
         self._state = new_state(*start_pose(rig, attitude, start))
@@ -350,6 +364,7 @@ class PreviewStepper:
         pose, code = start_pose(self._rig, attitude, way.pose[0])
         if code == EXACT:
             self._state = new_state(pose, code)
+            self.way = way
 
 
 def start_nodes(rig: Rig, table: Array, attitude: Array) -> Array:
