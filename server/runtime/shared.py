@@ -7,6 +7,7 @@ stop requests are times that the server writes and the loop compares, so they ne
 
 import mmap
 import os
+import time
 from pathlib import Path
 from typing import Any
 
@@ -117,7 +118,9 @@ class Shared:
 
     def snapshot(self) -> bytes | None:
         """The newest snapshot; None before the first, or where the writer died inside `publish`."""
-        for _ in range(64):
+        for attempt in range(64):
+            if attempt >= 16:
+                time.sleep(2e-4)  # the writer was put aside in the middle of it
             before = int(self._text["version"][0])
             if before and before % 2 == 0:
                 start = _TEXT_AT + 16

@@ -12,24 +12,29 @@ def test_a_snapshot_is_read_whole_beside_its_writer(tmp_path: Path) -> None:
     writer = Shared(tmp_path / "memory", create=True)
     reader = Shared(tmp_path / "memory")
     assert reader.snapshot() is None
-    done = threading.Event()
+    enough = threading.Event()
+    written = []
 
     def write() -> None:
-        for n in range(3000):
-            writer.publish(bytes([n % 251]) * (1000 + n), n)
-        done.set()
+        n = 0
+        while not enough.is_set():
+            n += 1
+            writer.publish(bytes([n % 251]) * (1000 + n % 3000), n)
+        written.append(bytes([n % 251]) * (1000 + n % 3000))
 
     thread = threading.Thread(target=write)
     thread.start()
-    seen = 0
-    while not done.is_set():
-        data = reader.snapshot()
-        if data is not None:
-            assert len(set(data)) == 1
-            seen += 1
-    thread.join()
-    assert seen > 0
-    assert reader.snapshot() == bytes([2999 % 251]) * 3999
+    seen: set[bytes] = set()
+    try:
+        while len(seen) < 100:
+            data = reader.snapshot()
+            if data is not None:
+                assert len(set(data)) == 1
+                seen.add(data)
+    finally:
+        enough.set()
+        thread.join()
+    assert [reader.snapshot()] == written
 
 
 def test_what_does_not_fit_is_refused_or_marked(tmp_path: Path) -> None:
