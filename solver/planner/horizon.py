@@ -130,7 +130,6 @@ def search(
     past: float,
     first: Array,
     first_rate: Array,
-    first_cost: Array,
     slides: int,
     beam: int,
     poses: Array,
@@ -152,7 +151,7 @@ def search(
         for i in range(4):
             d[0, b, i] = first[b, i]
             v[b, i] = first_rate[b, i]
-        cost[b] = first_cost[b]
+        cost[b] = 0.0
     count = m
     # A first rate that is free is chosen finely: inertia keeps it for a while.
     begin_slides = slides if past > 0.0 else FREE_SLIDES * slides

@@ -143,6 +143,13 @@ class Replan:
 
     def run(self) -> Ahead:
         """Find the way."""
+        time, pose, known, over = self.stages()
+        knots, position, rate = smooth_way(time, pose, self.rate[0] if self.past > 0.0 else None)
+        lost_at = float(time[over]) if over < len(time) else math.inf
+        return Ahead(self.number, knots, position, rate, known, lost_at)
+
+    def stages(self) -> tuple[Array, Array, int, int]:
+        """(time (k,) [s], exact pose (k, 4) [rad], stages whose attitude is known, the first one over a limit or k)."""
         o = self.options
         horizon = max(o.horizon_s, float(self.known_time[-1]) - self.clock)
         count = max(1, math.ceil(horizon / o.stage_s - 1e-9))
@@ -159,14 +166,12 @@ class Replan:
             ]
         )  # fmt: skip
         pose = np.empty((count + 1, 4))
-        first_cost = np.zeros(len(self.pose))
+        beam = o.beam if len(self.pose) == 1 else START_BEAM
         _, over = search(
-            self.horizontal, self.table, weights, time, attitude, trust, self.past, self.pose, self.rate, first_cost,
-            o.slides, o.beam if len(self.pose) == 1 else START_BEAM, pose,
+            self.horizontal, self.table, weights, time, attitude, trust, self.past, self.pose, self.rate,
+            o.slides, beam, pose,
         )  # fmt: skip
-        knots, position, rate = smooth_way(time, pose, self.rate[0] if self.past > 0.0 else None)
-        lost_at = float(time[over]) if over <= count else math.inf
-        return Ahead(self.number, knots, position, rate, known, lost_at)
+        return time, pose, known, over
 
 
 def smooth_way(time: Array, pose: Array, rate: Array | None) -> tuple[Array, Array, Array]:
