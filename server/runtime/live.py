@@ -9,6 +9,7 @@ import hashlib
 import math
 import os
 import socket
+import time
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -72,12 +73,12 @@ class LiveStep:
         self._dt = dt
         try:
             self._options = msgspec.convert(settings.options, self._method.options)
-            self.begin(rig.home)
+            self.begin(rig.home.copy())  # writable, as in flight: to Numba a type of its own
         except (SolverError, msgspec.ValidationError) as cause:
             raise LiveError(str(cause)) from cause
         # Compiled here, at rest, and not in the first live tick.
-        self.step(self._C[0])
-        self.step(self._C[0])
+        self.follow(np.array([1.0, 0.0, 0.0, 0.0]))
+        self.begin(rig.home.copy())
 
     def begin(self, pose: Array) -> None:
         """From rest at `pose` (4,) [rad]."""
@@ -93,9 +94,9 @@ class LiveStep:
         self._tick = 1
         self._time = np.zeros(1)
 
-    def step(self, C: Array) -> tuple[Array, int]:
-        """The next angles (4,) [rad] toward attitude C (3, 3), and the code of the limit that keeps them from it."""
-        self._C[0] = C
+    def follow(self, q: Array) -> tuple[Array, int]:
+        """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
+        attitude_of(q, self._C[0])
         self._time[0] = self._tick * self._dt
         self._tick += 1
         block = self._stepper.block(self._time, self._C)
@@ -118,7 +119,6 @@ class LiveSource:
         self._begun = 0.0
         self._following = False
         self._waited = True
-        self._C = np.empty((3, 3))
         self.stale = self.limited = False
         self.acquired = False  # the source's attitude was reached once
         self.bad = 0
@@ -178,7 +178,7 @@ class LiveSource:
                     self.bad += 1
                     continue
                 used = self._following and self._buffer.add(sample, now)
-                self._waiting.append((sample, used, now, each, sender))
+                self._waiting.append((sample, used, time.monotonic(), each, sender))
 
     def tick(self, x1: Array, v1: Array, x: Array, q: Array) -> bool:  # noqa: ARG002
         """Fill the next command x and the attitude q it follows; False where the source is lost."""
@@ -196,8 +196,7 @@ class LiveSource:
         if age * 1e3 > self._config.extrapolate_ms:
             return False
         self._buffer.at(self._now, q)
-        attitude_of(q, self._C)
-        angles, code = self._step.step(self._C)
+        angles, code = self._step.follow(q)
         self.limited = code != 0
         self.acquired = self.acquired or not self.limited
         x[:] = angles

@@ -70,6 +70,7 @@ class RigLoop:
         self._drive_brakes_since = 0.0
         self._disable_at_rest = False
         self._estop_unwritten = False
+        self._obeyed: list[tuple[str, int]] = []  # E-stop and stop requests not answered yet
         self._start_recorder = start_recorder
         self._recorder = recorder
         self.status = 0
@@ -123,6 +124,7 @@ class RigLoop:
             self.judge.silences(now)
             self.judge.recorder(now)
         self._move(now)
+        self._answer_lanes()
         solved_deg = self.panel.record(now_ns, lateness_ns, missed, error)
         self.live.reply(self.motion.x, solved_deg, self.guard.margin, time.monotonic())
         self.ticks += 1
@@ -222,8 +224,16 @@ class RigLoop:
                 continue
             who = bytes(header[f"{lane}_who"][0]).decode("utf-8", "replace")
             self.desk.lane(command, who, now)
-            header[f"{lane}_done_ns"] = asked
+            self._obeyed.append((lane, asked))
             self._estop_unwritten = lane == "estop" or self._estop_unwritten
+
+    def _answer_lanes(self) -> None:
+        """Only after the first braking command is written; and who reads "done" must find the state it led to."""
+        if self._obeyed:
+            self.panel.publish()
+            for lane, asked in self._obeyed:
+                self._header[f"{lane}_done_ns"] = asked
+            self._obeyed.clear()
 
     # --- moving ---
 

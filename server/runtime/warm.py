@@ -7,12 +7,27 @@ import numpy as np
 from server.plan_folder import make_plan
 from server.runtime.config import RigConfig
 from server.runtime.guard import Guard
+from server.runtime.live_buffer import LiveBuffer
+from server.runtime.live_packet import LiveSample
 from server.runtime.motion import Motion
 from server.session.states import Event
 
 
 def kernels(config: RigConfig) -> None:
-    """Fly a path of a few samples through motion and guard, and throw it away."""
+    """Fly a path of a few samples and a live source's buffer, and throw them away. What is left is the live step's.
+
+    A kernel that is first called in mid-flight would be compiled there, on a fresh machine for seconds.
+    """
+    _path(config)
+    buffer = LiveBuffer(0.0)
+    q = np.empty(4)
+    for k in range(2):
+        buffer.add(LiveSample(k, 0.1 * k, (1.0, 0.0, 0.0, 0.0), None), 0.1 * k)
+    for now in (0.05, 0.15):  # interpolated, extrapolated
+        buffer.at(now, q)
+
+
+def _path(config: RigConfig) -> None:
     rig = config.rig
     n = 8
     angles = np.tile(rig.home, (n, 1))
