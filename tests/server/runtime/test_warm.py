@@ -1,4 +1,4 @@
-"""After the warm-up no kernel is met for the first time in flight, where compiling it would miss seconds of deadlines."""
+"""After the warm-up no kernel is first met in flight, where compiling it would miss seconds of deadlines."""
 
 import json
 import subprocess
