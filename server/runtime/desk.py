@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from server.drives.base import DriveError
 from server.runtime import orders, wire
-from server.runtime.live import LiveError
+from server.runtime.live_step import LiveError
 from server.runtime.orders import OrderError
 from server.session.errors import SessionError
 from server.session.machine import Binding
@@ -158,6 +158,8 @@ class Desk:
         orders.check_record(loop.config.runs, loop.config.min_free_mb, silent_s)
         pair = orders.asked_pair(request.args, loop.machine.binding)
         loop.machine.check_pair(pair)
+        # What came before in this very tick may have taken long (a load): the drive and we agree on the time again.
+        loop.status = loop.drive.read(now, loop.measured, loop.measured_rate)
         try:
             loop.drive.enable()
         except DriveError as cause:

@@ -30,6 +30,7 @@ from server.session.states import Command, State
 from server.session.table import allowed
 
 REPLY_S = 5.0
+LOAD_S = 60.0  # a live method that has not been used on this machine compiles first
 _END_S = 15.0
 POLL_S = 0.005
 BEAT_S = 0.05
@@ -326,7 +327,8 @@ class RigHost:
         if self._dead or self._link is None:
             return wire.Answer(0, self._unreachable(before, word, "the rig process is not running"))
         try:
-            answer = await self._link.request(op, who, timeout_s=REPLY_S, **rest)
+            timeout_s = LOAD_S if word == Command.LOAD else REPLY_S
+            answer = await self._link.request(op, who, timeout_s=timeout_s, **rest)
         except RigUnreachableError as cause:
             return wire.Answer(0, self._unreachable(before, word, str(cause)))
         return replace(answer, reply=replace(answer.reply, revision=answer.reply.revision + self._offset))

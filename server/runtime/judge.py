@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from server.runtime.loop import RigLoop
 
 _RECORDER_SILENT_S = 1.0
+_WAY_LATE_S = 0.5  # ten times as long as between two ways
 
 
 class Judge:
@@ -112,6 +113,10 @@ class Judge:
         found = loop.guard.scalar("live_source_stale", live.last_age_ms, loop.config.guard.stale_ms, "ms")
         if found is not None and live.heard:
             self.weigh(found)
+        if live.way_age_s > _WAY_LATE_S:
+            text = f"no way ahead from the planner for {live.way_age_s:.1f} s: the step goes on without its foresight"
+            age = live.way_age_s * 1e3
+            self.warn(Finding("preview_late", False, text, None, age, _WAY_LATE_S * 1e3, "ms"))
         counts = live.counts
         for word, told in (
             ("bad", "are none"),

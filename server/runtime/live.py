@@ -5,15 +5,12 @@ rig has, so that a source that begins elsewhere is approached inside the limits.
 extrapolated briefly, then the source counts as lost and the session stops the rig.
 """
 
-import hashlib
 import math
 import os
 import socket
 import time
-from dataclasses import dataclass, field
 from typing import Any
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,80 +24,14 @@ from server.runtime.live_packet import (
     decode_sample,
     encode_reply,
 )
-from server.runtime.path import attitude_error, attitude_of
+from server.runtime.live_step import LiveSettings, LiveStep, live_step
+from server.runtime.path import attitude_error
 from server.runtime.place import Place
-from solver.errors import SolverError
-from solver.kinematics import payload_attitude
 from solver.rig import Rig
 
 Array = NDArray[np.float64]
 _PER_TICK = 16
 _DEG = 180.0 / math.pi
-
-
-@dataclass(frozen=True)
-class LiveSettings:
-    """How a live source is flown: the step method and its options."""
-
-    method: str = "exact"
-    options: dict[str, Any] = field(default_factory=dict)
-    first_sample_s: float = 5.0  # to wait for the source to begin
-
-    @property
-    def hash(self) -> str:
-        """sha-256 of the settings: what `arm` is held to."""
-        content = [self.method, sorted(self.options.items()), self.first_sample_s]
-        return hashlib.sha256(msgspec.json.encode(content)).hexdigest()
-
-
-class LiveError(Exception):
-    """Live settings that cannot be flown: which, and why."""
-
-
-class LiveStep:
-    """The solver's step for one rig and settings. Raises `LiveError` where they do not go together."""
-
-    def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
-        # Heavier than the rest of the rig process: only where it is used.
-        from solver.methods import METHODS
-
-        if settings.method not in METHODS:
-            raise LiveError(f"method {settings.method!r}: expected one of {', '.join(METHODS)}")
-        self._method = METHODS[settings.method]
-        if not self._method.claims_limits:
-            raise LiveError(f"method {settings.method} does not keep the limits: it cannot fly a live source")
-        self._rig = rig
-        self._dt = dt
-        try:
-            self._options = msgspec.convert(settings.options, self._method.options)
-            self.begin(rig.home.copy())  # writable, as in flight: to Numba a type of its own
-        except (SolverError, msgspec.ValidationError) as cause:
-            raise LiveError(str(cause)) from cause
-        # Compiled here, at rest, and not in the first live tick.
-        self.follow(np.array([1.0, 0.0, 0.0, 0.0]))
-        self.begin(rig.home.copy())
-
-    def begin(self, pose: Array) -> None:
-        """From rest at `pose` (4,) [rad]."""
-        from solver.methods.base import LiveStepper  # with it come all methods
-
-        self._C = np.empty((1, 3, 3))
-        payload_attitude(self._rig.axes, pose, self._C[0])
-        stepper = self._method.stepper(self._rig, self._options, pose, self._C[0].copy())
-        if not isinstance(stepper, LiveStepper):
-            raise LiveError(f"method {self._method.name} cannot take over a rig that stands")
-        stepper.begin_at_rest(self._dt)
-        self._stepper = stepper
-        self._tick = 1
-        self._time = np.zeros(1)
-
-    def follow(self, q: Array) -> tuple[Array, int]:
-        """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
-        attitude_of(q, self._C[0])
-        self._time[0] = self._tick * self._dt
-        self._tick += 1
-        block = self._stepper.block(self._time, self._C)
-        return block.angles[0], int(block.limited[0])
 
 
 class LiveSource:
@@ -140,14 +71,24 @@ class LiveSource:
             each.setblocking(False)
 
     def close(self) -> None:
-        """Close the sockets."""
+        """Close the sockets, end the planner."""
+        self.unload()
         for each in self._sockets:
             each.close()
 
     def prepare(self, settings: LiveSettings) -> None:
-        """Make ready for `settings`, at rest: may compile. Raises `LiveError`."""
-        self._step = LiveStep(self._rig, settings, self._dt)
+        """Make ready for `settings`, at rest: may compile. Raises `LiveError`, and the earlier settings stand."""
+        step = live_step(self._rig, settings, self._dt)
+        self.unload()
+        self._step = step
         self._settings = settings
+        self._buffer = LiveBuffer(self._config.delay_ms / 1e3 + step.preview_s)
+
+    def unload(self) -> None:
+        """Forget the settings: a planner ends."""
+        if self._step is not None:
+            self._step.close()
+            self._step = None
 
     def begin(self, pose: Array, now: float) -> None:
         """Follow from rest at `pose` (4,) [rad]; what the source sent before counts no more."""
@@ -177,8 +118,20 @@ class LiveSource:
                 if sample is None:
                     self.bad += 1
                     continue
-                used = self._following and self._buffer.add(sample, now)
+                used = self._following and self._take(sample, now)
                 self._waiting.append((sample, used, time.monotonic(), each, sender))
+
+    def _take(self, sample: LiveSample, now: float) -> bool:
+        assert self._step is not None
+        steps = self._buffer.steps
+        if not self._buffer.add(sample, now):
+            return False
+        if self._buffer.steps != steps:
+            self._step.void()
+        ahead = -self._buffer.age(now)
+        if ahead > 0.0:
+            self._step.announce(ahead, sample.quaternion)
+        return True
 
     def tick(self, x1: Array, v1: Array, x: Array, q: Array) -> bool:  # noqa: ARG002
         """Fill the next command x and the attitude q it follows; False where the source is lost."""
@@ -225,6 +178,11 @@ class LiveSource:
     def heard(self) -> bool:
         """Whether the last tick had a sample to follow, however old."""
         return not self._waited
+
+    @property
+    def way_age_s(self) -> float:
+        """How old the planner's last word is [s]; nan where none plans."""
+        return math.nan if self._step is None else self._step.way_age_s
 
     @property
     def counts(self) -> dict[str, int]:

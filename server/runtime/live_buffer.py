@@ -14,7 +14,8 @@ from server.runtime.live_packet import LiveSample
 from solver._jit import kernel
 
 Array = NDArray[np.float64]
-_KEPT = 64
+_KEPT = 64  # samples, beside those that are known ahead
+_FASTEST_HZ = 1000.0  # of a source
 _DRIFT = 2e-4  # [s/s] of the offset, upward: more than two quartz clocks differ
 _STEP_S = 0.5  # a clock that jumps farther is a new clock
 
@@ -81,16 +82,18 @@ class LiveBuffer:
     """The newest samples of one source. Times are ours [s, monotonic] unless said otherwise."""
 
     def __init__(self, delay_s: float) -> None:
+        """delay_s: how long before it is flown a sample is told, at the least [s]."""
         self._delay = delay_s
+        self._kept = _KEPT + math.ceil(delay_s * _FASTEST_HZ)
+        rows = 2 * self._kept  # so that they move to the front only now and then
+        self._time = np.zeros(rows)  # the source's [s]
+        self._q = np.zeros((rows, 4))
+        self._rate = np.zeros((rows, 3))
         self.reset()
 
     def reset(self) -> None:
         """Forget the source."""
-        self._time = np.zeros(_KEPT)  # the source's [s]
-        self._q = np.zeros((_KEPT, 4))
-        self._rate = np.zeros((_KEPT, 3))
-        self._given = np.zeros(_KEPT, bool)  # the source gave the rate
-        self._count = 0
+        self._end = 0  # rows filled
         self._offset = math.inf
         self._offset_at = 0.0
         self._sequence = -1
@@ -99,56 +102,58 @@ class LiveBuffer:
     def add(self, sample: LiveSample, now: float) -> bool:
         """Take a sample that arrived at `now`; False where it is out of order or sent twice."""
         offset = now - sample.time_s
-        if self._count and abs(offset - self._offset) > _STEP_S:
+        if self._end and abs(offset - self._offset) > _STEP_S:
             # The source began anew, or its clock was set: so do we, without believing the gap between.
             steps = self.steps + 1
             accepted, dropped = self.accepted, self.dropped
             self.reset()
             self.steps, self.accepted, self.dropped = steps, accepted, dropped
-        elif self._count and (sample.time_s <= self._time[0] or sample.sequence <= self._sequence):
+        elif self._end and (sample.time_s <= self._time[self._end - 1] or sample.sequence <= self._sequence):
             self.dropped += 1
             return False
         drifted = self._offset + _DRIFT * (now - self._offset_at)
         self._offset, self._offset_at = min(offset, drifted), now
         self._sequence = sample.sequence
-        for rows in (self._time, self._q, self._rate, self._given):
-            rows[1:] = rows[:-1].copy()
-        self._time[0] = sample.time_s
-        self._q[0] = sample.quaternion
-        self._given[0] = sample.rate is not None
+        if self._end == len(self._time):
+            for rows in (self._time, self._q, self._rate):
+                rows[: self._kept] = rows[-self._kept :]
+            self._end = self._kept
+        k = self._end
+        self._time[k] = sample.time_s
+        self._q[k] = sample.quaternion
+        if k and self._q[k] @ self._q[k - 1] < 0.0:
+            self._q[k] *= -1.0
         if sample.rate is not None:
-            self._rate[0] = sample.rate
-        if self._count:
-            if self._q[0] @ self._q[1] < 0.0:
-                self._q[0] *= -1.0
-            if not self._given[0]:
-                self._rate[0] = _rate_between(self._q[1], self._q[0], self._time[0] - self._time[1])
-        elif not self._given[0]:
-            self._rate[0] = 0.0
-        self._count = min(self._count + 1, _KEPT)
+            self._rate[k] = sample.rate
+        elif k:
+            self._rate[k] = _rate_between(self._q[k - 1], self._q[k], float(self._time[k] - self._time[k - 1]))
+        else:
+            self._rate[k] = 0.0
+        self._end += 1
         self.accepted += 1
         return True
 
     def age(self, now: float) -> float:
         """How far the flown instant lies beyond the newest sample [s]; negative while it can be interpolated."""
-        return math.inf if not self._count else now - self._delay - self._offset - float(self._time[0])
+        if not self._end:
+            return math.inf
+        return now - self._delay - self._offset - float(self._time[self._end - 1])
 
     def at(self, now: float, q: Array) -> bool:
         """q (4,) <- the attitude to fly at `now`; False before the first sample."""
-        if not self._count:
+        if not self._end:
             return False
         wanted = now - self._delay - self._offset  # on the source's clock
-        newest = self._time[0]
-        if wanted >= newest or self._count == 1:
-            _turned(self._q[0], self._rate[0], max(0.0, wanted - newest), q)
+        last = self._end - 1
+        newest = float(self._time[last])
+        if wanted >= newest:
+            _turned(self._q[last], self._rate[last], wanted - newest, q)
             return True
-        k = 1
-        while k < self._count - 1 and self._time[k] > wanted:
-            k += 1
-        if wanted <= self._time[k]:
-            q[:] = self._q[k]  # older than all we keep: the source has only begun
+        k = int(np.searchsorted(self._time[: self._end], wanted, side="right"))  # the first later one
+        if k == 0:
+            q[:] = self._q[0]  # older than all we keep: the source has only begun
             return True
-        h = self._time[k - 1] - self._time[k]
-        share = (wanted - self._time[k]) / h
-        _between(self._q[k], self._rate[k], self._q[k - 1], self._rate[k - 1], h, share, q)
+        h = float(self._time[k] - self._time[k - 1])
+        share = (wanted - float(self._time[k - 1])) / h
+        _between(self._q[k - 1], self._rate[k - 1], self._q[k], self._rate[k], h, share, q)
         return True

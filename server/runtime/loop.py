@@ -162,6 +162,7 @@ class RigLoop:
                     self.power_off()
                 case Action.UNBIND:
                     self.motion.unload()
+                    self.live.unload()
                     self.judge.forget()
                 case Action.CLEAR:
                     self.judge.forget()

@@ -11,7 +11,7 @@ import numpy as np
 
 from server.plan_folder import PlanFolder, PlanFolderError, read_plan, rig_hash
 from server.runtime.config import RigConfig
-from server.runtime.live import LiveSettings
+from server.runtime.live_step import LiveSettings
 from server.runtime.motion import Motion
 from server.runtime.point import MoveError, PointMove
 from server.session.errors import SessionError

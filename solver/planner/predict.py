@@ -136,6 +136,10 @@ class Track:
         for k in range(len(time)):
             self._append(float(time[k]), attitude[k])
 
+    def void(self, now: float) -> None:
+        """Forget what was announced for after `now` [s]."""
+        self._count = int(np.searchsorted(self._time[: self._count], now, side="right"))
+
     def flown(self, time: float, attitude: Array) -> None:
         """Take in the present sample: attitude (3, 3). What is known of the future stays."""
         at = int(np.searchsorted(self._time[: self._count], time))

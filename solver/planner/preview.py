@@ -48,6 +48,7 @@ from solver.tracking import (
     goal,
     new_state,
     prepare,
+    stand,
     wish,
 )
 
@@ -303,6 +304,15 @@ class PreviewStepper:
         self._asked = 0
         self.asked_at = -math.inf  # [s] when the last job was asked for
         self.way = Ahead(0, np.empty(0), np.empty((0, 4)), np.empty((0, 4)), 0, math.inf)
+
+    def begin_at_rest(self, dt: float) -> None:
+        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
+        stand(self._state, dt)
+        self._free = False
+
+    def void(self) -> None:
+        """What the source said of the future does not come."""
+        self._track.void(float(self._state[CLOCK]))
 
     def offer(self, time: Array, attitude: Array) -> None:
         """The source's preview: time (m,) [s] increasing, attitude (m, 3, 3); what it said of those times is void.

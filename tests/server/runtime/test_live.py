@@ -116,7 +116,13 @@ def test_replies_come_back_as_they_went() -> None:
 
 
 def fed(
-    buffer: LiveBuffer, rate_hz: float, jitter_s: float, seconds: float, rates: bool, skew: float = 0.0
+    buffer: LiveBuffer,
+    rate_hz: float,
+    jitter_s: float,
+    seconds: float,
+    rates: bool,
+    skew: float = 0.0,
+    delay_s: float = 0.005,
 ) -> list[Any]:
     """Samples at `rate_hz`, each late by up to `jitter_s`, and the worst error of what is flown at 1 kHz [deg]."""
     generator = np.random.default_rng(3)
@@ -133,8 +139,8 @@ def fed(
             a, b, c, d = attitude
             buffer.add(LiveSample(int(i), stamp, (a, b, c, d), tuple(rate) if rates else None), float(arrive[order[k]]))
             k += 1
-        if buffer.at(float(now), q) and now > 101.0:
-            errors.append((angle_deg(q, flight(float(now) - 100.0 - 0.005)[0]), buffer.age(float(now))))
+        if buffer.at(float(now), q) and now > 101.0 + delay_s:
+            errors.append((angle_deg(q, flight(float(now) - 100.0 - delay_s)[0]), buffer.age(float(now))))
     return errors
 
 
@@ -145,6 +151,13 @@ def test_jitter_within_the_delay_is_interpolated_away() -> None:
     assert max(e for e, _ in errors) < 0.02
     assert max(age for _, age in errors) <= 0.0
     assert buffer.dropped > 0  # the overtaken ones
+
+
+def test_a_source_that_tells_the_future_is_flown_when_it_is_due() -> None:
+    # As many samples ahead as two seconds at the fastest rate hold, and three times round.
+    errors = fed(LiveBuffer(2.0), 1000.0, 0.003, 8.0, rates=True, delay_s=2.0)
+    assert max(e for e, _ in errors) < 0.02
+    assert max(age for _, age in errors) < -1.9
 
 
 def test_a_sparse_source_is_met_by_its_own_rates() -> None:

@@ -18,7 +18,8 @@ from server.plan_folder import read_plan, write_plan
 from server.runtime import warm
 from server.runtime.config import LiveConfig, RigConfig
 from server.runtime.guard import Guard
-from server.runtime.live import LiveSettings, LiveSource
+from server.runtime.live import LiveSource
+from server.runtime.live_step import LiveSettings
 from server.runtime.live_packet import Kind, encode_sample
 from server.runtime.motion import Mode, Motion
 from server.runtime.place import Place
@@ -71,6 +72,7 @@ for k in range(400):
     tick()
     source.reply(motion.x, 0.0, guard.margin, now)
     done += source.heard
+source.close()
 """
 PATH = """
 from tests.server.runtime.rigs import plan_of
@@ -118,7 +120,7 @@ def fly(script: str, *arguments: str) -> dict[str, Any]:
 
 
 def test_a_live_flight_meets_no_kernel_for_the_first_time(tmp_path: Path) -> None:
-    for method in ("exact", "alm"):
+    for method in ("exact", "alm", "preview"):
         folder = tmp_path / method
         folder.mkdir()
         said = fly(LIVE, str(folder), method)

@@ -1,0 +1,134 @@
+"""One step of a live flight: a method of the solver that keeps the limits, or `preview` with its planner."""
+
+import hashlib
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from server.runtime.path import attitude_of
+from solver.errors import SolverError
+from solver.kinematics import payload_attitude
+from solver.rig import Rig
+
+Array = NDArray[np.float64]
+PREVIEW = "preview"
+
+
+@dataclass(frozen=True)
+class LiveSettings:
+    """How a live source is flown: the step method and its options."""
+
+    method: str = "exact"
+    options: dict[str, Any] = field(default_factory=dict)
+    first_sample_s: float = 5.0  # to wait for the source to begin
+
+    @property
+    def hash(self) -> str:
+        """sha-256 of the settings: what `arm` is held to."""
+        content = [self.method, sorted(self.options.items()), self.first_sample_s]
+        return hashlib.sha256(msgspec.json.encode(content)).hexdigest()
+
+
+class LiveError(Exception):
+    """Live settings that cannot be flown: which, and why."""
+
+
+class LiveStep(Protocol):
+    """A live flight in progress, one tick at a time."""
+
+    preview_s: float  # the samples are told this long [s] before they are flown
+
+    def begin(self, pose: Array) -> None:
+        """From rest at `pose` (4,) [rad]."""
+        ...
+
+    def follow(self, q: Array) -> tuple[Array, int]:
+        """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
+        ...
+
+    def announce(self, ahead_s: float, q: tuple[float, float, float, float]) -> None:
+        """The attitude q that is to be flown `ahead_s` [s] after the tick to come."""
+        ...
+
+    def void(self) -> None:
+        """What was announced is not to come: the source began anew."""
+        ...
+
+    @property
+    def way_age_s(self) -> float:
+        """How old the planner's last word is [s]; nan for a method that has no planner."""
+        ...
+
+    def close(self) -> None:
+        """End the planner, where there is one."""
+        ...
+
+
+def live_step(rig: Rig, settings: LiveSettings, dt: float) -> LiveStep:
+    """The step for one rig and settings, its kernels compiled. Raises `LiveError` where they do not go together."""
+    if settings.method != PREVIEW:
+        return MethodStep(rig, settings, dt)
+    from server.runtime.live_preview import PreviewStep  # with it comes the planner
+
+    return PreviewStep(rig, settings, dt)
+
+
+class MethodStep:
+    """A step method of the solver."""
+
+    preview_s = 0.0
+    way_age_s = float("nan")
+
+    def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
+        # Heavier than the rest of the rig process: only where it is used.
+        from solver.methods import METHODS
+
+        if settings.method not in METHODS:
+            raise LiveError(f"method {settings.method!r}: expected one of {', '.join(METHODS)}, {PREVIEW}")
+        self._method = METHODS[settings.method]
+        if not self._method.claims_limits:
+            raise LiveError(f"method {settings.method} does not keep the limits: it cannot fly a live source")
+        self._rig = rig
+        self._dt = dt
+        try:
+            self._options = msgspec.convert(settings.options, self._method.options)
+            self.begin(rig.home.copy())  # writable, as in flight: to Numba a type of its own
+        except (SolverError, msgspec.ValidationError) as cause:
+            raise LiveError(str(cause)) from cause
+        # Compiled here, at rest, and not in the first live tick.
+        self.follow(np.array([1.0, 0.0, 0.0, 0.0]))
+        self.begin(rig.home.copy())
+
+    def begin(self, pose: Array) -> None:
+        """From rest at `pose` (4,) [rad]."""
+        from solver.methods.base import LiveStepper  # with it come all methods
+
+        self._C = np.empty((1, 3, 3))
+        payload_attitude(self._rig.axes, pose, self._C[0])
+        stepper = self._method.stepper(self._rig, self._options, pose, self._C[0].copy())
+        if not isinstance(stepper, LiveStepper):
+            raise LiveError(f"method {self._method.name} cannot take over a rig that stands")
+        stepper.begin_at_rest(self._dt)
+        self._stepper = stepper
+        self._tick = 1
+        self._time = np.zeros(1)
+
+    def follow(self, q: Array) -> tuple[Array, int]:
+        """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
+        attitude_of(q, self._C[0])
+        self._time[0] = self._tick * self._dt
+        self._tick += 1
+        block = self._stepper.block(self._time, self._C)
+        return block.angles[0], int(block.limited[0])
+
+    def announce(self, ahead_s: float, q: tuple[float, float, float, float]) -> None:
+        """Nothing: a step method looks at the present alone."""
+
+    def void(self) -> None:
+        """Nothing: see `announce`."""
+
+    def close(self) -> None:
+        """Nothing to end."""
