@@ -24,8 +24,8 @@ from solver.attitude import dcm_from_quaternion
 from solver.errors import SolverError
 from solver.methods import METHODS
 from solver.planner import PlanOptions, plan
-from solver.planner.preview import PreviewOptions
 from solver.planner.preview_flight import PreviewFlight
+from solver.planner.way import PreviewOptions
 from solver.rig import FRAMES, FrameLimits, Geometry, Rig, builtin_rigs
 from solver.scenarios import random_flight
 from solver.solve import solve

@@ -61,7 +61,7 @@ def find_remedy(
         where = " ".join(filter(None, (frame, limit))) or "single"
         raise NoRemedyError(f"no {where} limit, raised, makes this flight fit {rig.name}: slow it down or turn it")
     first, *others = (_described(kind, remedy, rig) for remedy in found)
-    sufficient = found[0].plan.verdict.feasible
+    sufficient = found[0].plan.ready
     return Found(found[0], {"kind": kind, **first, "sufficient": sufficient, "alternatives": others})
 
 

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from solver.methods.base import Block
 from solver.planner.predict import SPACING
-from solver.planner.preview import Ahead, PreviewOptions, PreviewStepper
+from solver.planner.preview import PreviewStepper
+from solver.planner.way import Ahead, PreviewOptions
 from solver.rig import Rig
 
 Array = NDArray[np.float64]

@@ -1,6 +1,7 @@
 """What would make a flight fit: flying it slower, turning it by a constant, or raising one limit.
 
-Each remedy is a search over plans and returns the one it ends with, ready to fly. The trials skip the least-error path
+Each remedy is a search over plans and returns the one it ends with, ready to fly: the ways from rest and back to rest
+count, too. The trials skip the least-error path
 of an infeasible flight and, where the samples are dense, look at every few of them; what is returned is planned anew
 from all of them. `progress(done, total)` counts trials and may raise `CancelledError`.
 """
@@ -33,7 +34,7 @@ class Remedy:
     """A remedy: what was changed and by how much, and the flight, rig and plan that come of it.
 
     kind: "slow-down" (value: factor on the time), "heading" or "mounting" (value: angle [rad], `what`: the axis),
-    "relax" (value: the new limit, `what`: frame and limit). `plan.verdict.feasible` says whether it suffices.
+    "relax" (value: the new limit, `what`: frame and limit). `plan.ready` says whether it suffices.
     """
 
     kind: str
@@ -94,7 +95,7 @@ def slow_down(
     trials = _Trials(2 + math.ceil(math.log2(largest)) + 8, progress, options or PlanOptions(), start)
 
     def fits(factor: float) -> bool:
-        return trials.feasible(t[0] + (t - t[0]) * factor, C, rig).verdict.feasible
+        return trials.feasible(t[0] + (t - t[0]) * factor, C, rig).ready
 
     high = 1.0
     low = 1.0
@@ -106,7 +107,7 @@ def slow_down(
         middle = math.sqrt(high * low)
         low, high = (low, middle) if fits(middle) else (middle, high)
     remedy = _slowed(trials, t, C, rig, high)
-    while not remedy.plan.verdict.feasible and high < largest:  # what the thinned samples did not show
+    while not remedy.plan.ready and high < largest:  # what the thinned samples did not show
         high *= 1.0 + RELATIVE
         remedy = _slowed(trials, t, C, rig, high)
     return remedy
@@ -156,7 +157,7 @@ def offset(
 
     def room(axis: str, angle: float) -> float:
         made = trials.feasible(t, turned(C, kind, axis, angle), rig)
-        return smallest_share(made.margins, rig) if made.verdict.feasible else -math.inf
+        return smallest_share(made.margins, rig) if made.ready else -math.inf
 
     best = (room(axes[0], 0.0), axes[0], 0.0)
     for axis in axes:
@@ -208,13 +209,13 @@ def relax(
     candidates = [(i, kind) for i, kind in _limits(rig) if frame in (None, FRAMES[i]) and limit in (None, LIMITS[kind])]
     trials = _Trials(len(candidates) * 10 + 1, progress, options or PlanOptions(), start)
     found: list[tuple[float, int, int]] = []
-    if trials.feasible(t, C, rig).verdict.feasible:
+    if trials.feasible(t, C, rig).ready:
         return []
     for number, (i, kind) in enumerate(candidates):
         trials.done = 10 * number
 
         def fits(share: float, i: int = i, kind: int = kind) -> bool:
-            return trials.feasible(t, C, raised(rig, i, kind, share, largest)).verdict.feasible
+            return trials.feasible(t, C, raised(rig, i, kind, share, largest)).ready
 
         if not fits(1.0):
             continue
@@ -228,7 +229,7 @@ def relax(
         wider = raised(rig, i, kind, share, largest)
         value = (wider.position_max, wider.max_rate, wider.max_acceleration)[kind][i]
         made = trials.final(t, C, wider)
-        if made.verdict.feasible:
+        if made.ready:
             remedies.append(Remedy("relax", f"{FRAMES[i]} {LIMITS[kind]}", float(value), t, C, wider, made))
     return remedies
 

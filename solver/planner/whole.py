@@ -47,6 +47,11 @@ class Plan:
     chains: int  # how many chains were refined
     lead_note: str = ""
 
+    @property
+    def ready(self) -> bool:
+        """Whether a rig can fly it: feasible, with a way from rest to it and back to rest."""
+        return self.verdict.feasible and not self.lead_note
+
 
 class _Search:
     """One flight's search for a path; keeps what the attempts share."""

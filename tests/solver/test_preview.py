@@ -14,8 +14,9 @@ from solver.kinematics import jacobian
 from solver.limits import MAX, MIN, RATE, limit_table
 from solver.planner.horizon import room
 from solver.planner.predict import Track, attitudes_ahead, body_motion
-from solver.planner.preview import PreviewOptions, PreviewStepper, Replan, start_nodes
+from solver.planner.preview import PreviewStepper, start_nodes
 from solver.planner.preview_flight import PreviewFlight
+from solver.planner.way import PreviewOptions, Replan
 from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from solver.scenarios import DEG, SCENARIOS, random_flight
 from solver.solution import EXACT
@@ -360,11 +361,33 @@ def test_the_stages_lie_on_the_solutions_and_inside_the_limits() -> None:
     error, _ = attitude_errors(payload_attitudes(LIMITED, pose[kept]), attitude[at[kept]])
     assert error.max() < 1e-6
     assert not verify(stage, pose, LIMITED).violations
-    way = job.run()
+    way = replace(job, options=fast(smoothing=0)).run()
     assert way.lost_at == np.inf
     assert np.allclose(way.time[::2], stage)
     assert np.abs(way.pose[::2] - pose).max() < 1.0 * DEG
     assert not verify(way.time, way.pose, LIMITED).violations
+
+
+def test_smoothing_takes_the_jerks_from_the_same_way() -> None:
+    time, attitude = flight(2, 3.0, 60.0)
+    stepper = PreviewStepper(LIMITED, fast(), None, attitude[0])
+    stepper.offer(time, attitude)
+    stepper.block(time[:2], attitude[:2])
+    job = stepper.replan()
+    rough, smooth = (replace(job, options=fast(smoothing=count)).run() for count in (0, 3))
+
+    def jerk(way) -> float:
+        acceleration = np.diff(way.rate, axis=0) / np.diff(way.time)[:, None]
+        return float(np.sqrt(np.mean(np.diff(acceleration, axis=0) ** 2)))
+
+    assert jerk(smooth) < 0.5 * jerk(rough)
+    assert np.allclose(smooth.pose[0], rough.pose[0])
+    assert np.allclose(smooth.rate[0], rough.rate[0])
+    assert np.abs(smooth.pose[-1] - rough.pose[-1]).max() < 0.1 * DEG  # where the search wanted to be
+    assert not verify(smooth.time, smooth.pose, LIMITED).violations
+    at = np.rint(smooth.time * 100).astype(int)
+    error, _ = attitude_errors(payload_attitudes(LIMITED, smooth.pose), attitude[np.minimum(at, len(time) - 1)])
+    assert error[(at < len(time)) & (np.abs(at - smooth.time * 100) < 1e-6)].max() < 0.1 * DEG
 
 
 def test_a_loss_is_foretold() -> None:

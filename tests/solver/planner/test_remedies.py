@@ -42,6 +42,23 @@ def test_slow_down_leaves_a_flight_that_fits():
     assert flies(remedy)
 
 
+def test_a_flight_that_fits_but_cannot_brake_after_its_end_is_slowed_until_it_can():
+    # 2 deg before its stop the base goes at 40 deg/s, and 4 deg are needed to brake.
+    yaw = dcm_from_euler((58 * DEG - 40 * DEG * (TIME[-1] - TIME)), 0.0, 0.0)
+    still = FrameLimits(-1e-6, 1e-6)
+    base = FrameLimits(-80 * DEG, 60 * DEG, 100 * DEG, 200 * DEG)
+    rig = Rig("base", Geometry.VERTICAL_4, (base, still, still, still))
+    as_it_is = plan(TIME, yaw, rig)
+    assert as_it_is.verdict.feasible
+    assert "base frame's position" in as_it_is.lead_note
+    assert not as_it_is.ready
+    remedy = slow_down(TIME, yaw, rig)
+    assert flies(remedy)
+    assert remedy.plan.ready
+    assert 1.4 < remedy.value < 2.0  # v^2 / 2a = 2 deg at 1.41 times the time, and a smooth lead takes a little more
+    assert remedy.plan.lead_out[-1, 0] <= 60 * DEG
+
+
 def test_slow_down_says_where_no_factor_does():
     remedy = slow_down(TIME, YAW, base_alone(50 * DEG, 30 * DEG), largest=2.0)
     assert remedy.value == 2.0
