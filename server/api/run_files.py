@@ -1,9 +1,12 @@
 """Recorded runs as the outside sees them: a summary of each file, kept beside it, and tables for export."""
 
 import json
-from dataclasses import asdict, dataclass
+import time
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 import pyarrow as pa
@@ -24,6 +27,7 @@ _UNITS = {
     "measured_rate": "deg_s",
     "following_error_deg": "deg",
 }
+_WRITTEN_S = 5.0  # a record that has not grown for so long is no longer written: its recorder was cut off
 _QUATERNION = ("w", "x", "y", "z")
 
 
@@ -38,8 +42,8 @@ class RunSummary:
     who: str
     started: float | None  # seconds since 1970, of the first sample
     ended: float | None
-    samples: int
-    lost_samples: int  # sequence numbers that are missing
+    samples: int | None  # None, as all that follows from them, while they are being written
+    lost_samples: int | None  # sequence numbers that are missing
     bytes: int
     complete: bool  # False while it is written, or where the recorder was cut off
     max_solve_error_deg: float | None
@@ -78,47 +82,69 @@ class RunFiles:
         return path
 
     def _summary(self, path: Path) -> RunSummary:
-        """Of the file; what is complete is read once and kept beside it."""
+        """Of the file: read whole once, when nobody writes to it any more, and kept beside it."""
         kept = path.with_suffix(".json")
-        size = path.stat().st_size
+        status = path.stat()
+        size = status.st_size
         try:
             summary = RunSummary(**json.loads(kept.read_text(encoding="utf-8")))
             if summary.bytes == size:
                 return summary
         except (OSError, ValueError, TypeError):
             pass  # not there yet, or of another version: it is read again
-        made = summarise(path)
-        if made.complete:
-            draft = kept.with_suffix(".tmp")
+        whole = is_whole(path)
+        if not whole and abs(time.time() - status.st_mtime) < _WRITTEN_S:
+            return summarise(path, None, complete=False)
+        made = summarise(path, read_samples(path), complete=whole)
+        if made.bytes == size:
+            draft = kept.with_suffix(f".{uuid4().hex}.tmp")
             draft.write_text(json.dumps(asdict(made)), encoding="utf-8")
             draft.replace(kept)
         return made
 
 
-def summarise(path: Path) -> RunSummary:
-    """Read the whole record. Raises `RecordError` where it is none."""
-    size, complete = path.stat().st_size, is_whole(path)
+def summarise(path: Path, rows: Samples | None, *, complete: bool) -> RunSummary:
+    """What the record and its rows say; without rows, what its beginning says. Raises `RecordError`."""
     run = run_of(path)
     plan = _object(run.get("plan"))
-    rows = read_samples(path)
-    flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & LEAD == 0)
-    sequence = rows["seq"].astype(np.int64)
-    return RunSummary(
+    brief = RunSummary(
         id=path.stem,
         rig=str(plan.get("rig") or path.stem.split("-", 1)[-1].rsplit("-", 1)[0]),
         plan_id=plan.get("plan_id"),
         plan_hash=plan.get("plan_hash"),
         who=run.get("who", ""),
-        started=float(rows["wall_ns"][0]) / 1e9 if rows.size else None,
+        started=_stamp(path.stem),
+        ended=None,
+        samples=None,
+        lost_samples=None,
+        bytes=path.stat().st_size,
+        complete=complete,
+        max_solve_error_deg=None,
+        max_tracking_error_deg=None,
+        max_lateness_us=None,
+    )
+    if rows is None:
+        return brief
+    flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & LEAD == 0)
+    sequence = rows["seq"].astype(np.int64)
+    return replace(
+        brief,
+        started=float(rows["wall_ns"][0]) / 1e9 if rows.size else brief.started,
         ended=float(rows["wall_ns"][-1]) / 1e9 if rows.size else None,
         samples=int(rows.size),
         lost_samples=int(sequence[-1] - sequence[0] + 1 - rows.size) if rows.size else 0,
-        bytes=size,
-        complete=complete,
         max_solve_error_deg=_largest(rows["solve_error_deg"][flying]),
         max_tracking_error_deg=_largest(rows["tracking_error_deg"][flying]),
         max_lateness_us=_largest(rows["lateness_us"]),
     )
+
+
+def _stamp(run: str) -> float | None:
+    """When a run began by its name, to the second [s since 1970]."""
+    try:
+        return datetime.strptime(run.split("-", 1)[0], "%Y%m%dT%H%M%S").replace(tzinfo=UTC).timestamp()
+    except ValueError:
+        return None
 
 
 def table(rows: Samples) -> pa.Table:

@@ -20,8 +20,8 @@ class RunOut(Wire):
     started_at: datetime | None
     ended_at: datetime | None
     duration_s: float | None
-    samples: int
-    lost_samples: int = Field(description="Sequence numbers that are missing")
+    samples: int | None = Field(description="Null, like all that follows from them, while the run is being written")
+    lost_samples: int | None = Field(description="Sequence numbers that are missing")
     bytes: int
     complete: bool = Field(description="False while it is being written, or where the recorder was cut off")
     max_solve_error_deg: float | None

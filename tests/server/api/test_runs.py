@@ -2,12 +2,17 @@
 
 import csv
 import io
+import os
+import time
 from pathlib import Path
 
 import numpy as np
 import pyarrow.parquet as pq
 
+from server.api.run_files import RunFiles
+from server.runtime.record import RunRecord
 from server.runtime.replay import read_samples
+from server.runtime.telemetry import SAMPLE
 from tests.server.api.live_server import LiveServer
 
 
@@ -46,3 +51,28 @@ def test_what_is_no_run(server: LiveServer, run: str) -> None:
     assert server.http.get("/runs/broken").status_code == 422
     assert server.http.get("/runs/broken/export").status_code == 422
     assert [line["id"] for line in server.http.get("/runs").json()] == [run]
+
+
+def test_a_run_that_is_being_written_is_not_read_through_and_one_that_was_cut_off_is_once(tmp_path: Path) -> None:
+    path = tmp_path / "20261122T030405-vertical-4-000001.mcap"
+    record = RunRecord(path, {"run_id": path.stem, "who": "ann", "plan": {"rig": "vertical-4"}}, 10**18, 0)
+    rows = np.zeros(9000, SAMPLE)
+    rows["seq"] = np.arange(1, 9001)
+    rows["time_ns"] = rows["wall_ns"] = rows["seq"] * 10**6
+    record.add_samples(rows)
+    record.cut()
+    runs = RunFiles(tmp_path)
+    (written,) = runs.all()
+    assert (written.rig, written.who, written.samples, written.complete) == ("vertical-4", "ann", None, False)
+    assert written.started is not None
+    assert time.gmtime(written.started)[:6] == (2026, 11, 22, 3, 4, 5)
+    long_ago = time.time() - 60.0
+    os.utime(path, (long_ago, long_ago))
+    (cut_off,) = runs.all()
+    assert (cut_off.samples, cut_off.lost_samples, cut_off.complete) == (9000, 0, False)
+    assert path.with_suffix(".json").is_file()
+    assert runs.get(path.stem) == cut_off
+    np.testing.assert_array_equal(read_samples(path, 5000, 4500)["seq"], np.arange(5001, 9001))
+    np.testing.assert_array_equal(read_samples(path, 0, 4097)["seq"], np.arange(1, 4098))
+    record.finish()
+    assert runs.get(path.stem).complete

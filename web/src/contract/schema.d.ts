@@ -2110,7 +2110,7 @@ export interface components {
              * Lost Samples
              * @description Sequence numbers that are missing
              */
-            lost_samples: number;
+            lost_samples: number | null;
             /** Max Lateness Us */
             max_lateness_us: number | null;
             /** Max Solve Error Deg */
@@ -2123,8 +2123,11 @@ export interface components {
             plan_id: string | null;
             /** Rig */
             rig: string;
-            /** Samples */
-            samples: number;
+            /**
+             * Samples
+             * @description Null, like all that follows from them, while the run is being written
+             */
+            samples: number | null;
             /** Started At */
             started_at: string | null;
             /** Who */
