@@ -7,7 +7,7 @@ from typing import Any
 from server.api.hosts import RigHosts
 from server.api.playback import RunPlayback
 from server.api.wire import Four
-from server.api.wire_session import AlarmOut, LeaseOut, PlanRef, RecorderOut, RigHealth, SessionOut
+from server.api.wire_session import AlarmOut, LeaseOut, LiveOut, PlanRef, RecorderOut, RigHealth, SessionOut
 from server.runtime.wire import Health, Snapshot
 from server.session.alarms import Alarm
 from server.session.lease import Lease
@@ -69,6 +69,7 @@ def health_out(health: Health) -> RigHealth:
         rig_pid=health.rig_pid,
         heartbeat_age_s=health.heartbeat_age_s,
         recorder=RecorderOut(**{key: recorder[key] for key in RecorderOut.model_fields}),
+        live=None if health.live is None else LiveOut(**asdict(health.live)),
     )
 
 

@@ -248,6 +248,20 @@ class RecorderOut(Wire):
     error: str
 
 
+class LiveOut(Wire):
+    """The live source that is loaded."""
+
+    rate_hz: float = Field(description="Samples taken in the last second or so")
+    age_ms: float | None = Field(
+        description="How far the attitude flown lies beyond the newest sample; negative: known ahead; null: not heard"
+    )
+    accepted: int
+    dropped: int = Field(description="Late, doubled or overtaken: not used")
+    bad: int = Field(description="No samples at all")
+    clock_steps: int = Field(description="How often the source's clock began anew")
+    way_age_ms: float | None = Field(description="Since the preview's planner was heard; null: no such method")
+
+
 class RigHealth(Wire):
     """How the rig process does; lateness over its whole life, by percentile."""
 
@@ -261,6 +275,7 @@ class RigHealth(Wire):
     rig_pid: int | None
     heartbeat_age_s: float | None
     recorder: RecorderOut | None
+    live: LiveOut | None = None
 
 
 class SessionOut(Wire):

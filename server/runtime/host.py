@@ -380,6 +380,7 @@ class RigHost:
                 free_bytes=int(header["recorder_free_bytes"][0]),
                 error=_text(header["recorder_error"][0]),
             ),
+            live=published.live,
         )
 
 

@@ -27,10 +27,12 @@ from server.runtime.live_packet import (
 from server.runtime.live_step import LiveSettings, LiveStep, live_step
 from server.runtime.path import attitude_error
 from server.runtime.place import Place
+from server.runtime.wire import LiveHealth
 from solver.rig import Rig
 
 Array = NDArray[np.float64]
 _PER_TICK = 16
+_RATE_OVER_S = 1.0
 _DEG = 180.0 / math.pi
 
 
@@ -54,6 +56,8 @@ class LiveSource:
         self.acquired = False  # the source's attitude was reached once
         self.bad = 0
         self.last_age_ms = 0.0
+        self.rate_hz = 0.0
+        self._rated = (0.0, 0)  # when, and samples by then
         self._open(place)
 
     def _open(self, place: Place) -> None:
@@ -108,6 +112,9 @@ class LiveSource:
     def poll(self, now: float) -> None:
         """Take the samples that have come."""
         self._now = now
+        if now - self._rated[0] > _RATE_OVER_S:
+            self.rate_hz = max(0, self._buffer.accepted - self._rated[1]) / (now - self._rated[0])
+            self._rated = (now, self._buffer.accepted)
         for each in self._sockets:
             for _ in range(_PER_TICK):
                 try:
@@ -183,6 +190,20 @@ class LiveSource:
     def way_age_s(self) -> float:
         """How old the planner's last word is [s]; nan where none plans."""
         return math.nan if self._step is None else self._step.way_age_s
+
+    def health(self) -> LiveHealth | None:
+        """What an operator wants to know of it; None where no live source is loaded."""
+        if self._step is None:
+            return None
+        counts = self.counts
+        heard = self._following and not self._waited
+        way = self.way_age_s * 1e3
+        return LiveHealth(
+            rate_hz=self.rate_hz,
+            age_ms=self.last_age_ms if heard else None,
+            way_age_ms=None if math.isnan(way) or not heard else way,
+            **counts,
+        )
 
     @property
     def counts(self) -> dict[str, int]:

@@ -68,6 +68,7 @@ class Panel:
             realtime=loop.realtime,
             run_id=loop.run_id,
             drive=loop.drive.name,
+            live=loop.live.health(),
         )
         loop.shared.publish(wire.encode(published), machine.revision)
         self._published = machine.revision

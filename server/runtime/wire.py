@@ -67,6 +67,19 @@ class PlanRef:
 
 
 @dataclass(frozen=True)
+class LiveHealth:
+    """The live source that is loaded."""
+
+    rate_hz: float  # of samples taken, over the last second or so
+    age_ms: float | None  # of the attitude flown beyond the newest sample, negative: known ahead; None: none heard
+    accepted: int
+    dropped: int
+    bad: int
+    clock_steps: int
+    way_age_ms: float | None  # since the preview's planner was heard; None: no such method
+
+
+@dataclass(frozen=True)
 class Published:
     """What the loop publishes at every revision."""
 
@@ -83,6 +96,7 @@ class Published:
     realtime: str
     run_id: str | None
     drive: str
+    live: LiveHealth | None = None
 
 
 @dataclass(frozen=True)
@@ -113,6 +127,7 @@ class Health:
     rig_pid: int
     heartbeat_age_s: float
     recorder: RecorderHealth
+    live: LiveHealth | None = None
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 import asyncio
 import time
 from collections.abc import AsyncIterator, Awaitable
+from contextlib import suppress
 
 from fastapi import APIRouter, WebSocket
 
@@ -19,6 +20,7 @@ from server.api.wire_stream import Hello, Playback, SessionChanged, StopNow, Sto
 from server.runtime.host import RigHost
 from server.runtime.telemetry import SAMPLE
 
+HEALTH_S = 1.0  # the session is told at least this often
 router = APIRouter(tags=["stream"])
 
 
@@ -55,7 +57,9 @@ class _Rig:
             await frames.turns.turn()
             revision = host.revision
             yield frames.session(revision, self._changed)
-            await host.wait_change(revision)
+            # Health is no change of the session, and no one should have to ask for it.
+            with suppress(TimeoutError):
+                await asyncio.wait_for(host.wait_change(revision), HEALTH_S)
 
     def control(self, message: Playback) -> Wire:
         raise ApiError(422, "not-a-replay", f"{message.type}: a rig as it lives can only be watched")

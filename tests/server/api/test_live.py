@@ -88,7 +88,13 @@ def test_json_samples_are_followed_and_the_sockets_end_is_a_controlled_stop(
             stream.send(json.dumps({"type": "sample", "time_s": 50.0 + t, "euler_deg": euler(t)}))
 
         replies = [LiveReplyOut.model_validate_json(text) for text in fly(operator, stream, 4.0, send)]
-        assert operator.session()["state"] == "live", operator.session()["alarms"]
+        now = operator.session()
+        assert now["state"] == "live", now["alarms"]
+        health = now["health"]["live"]
+        assert len(replies) - 100 <= health["accepted"] <= len(replies)  # told four times a second
+        assert (health["bad"], health["way_age_ms"]) == (0, None)
+        assert 20.0 < health["rate_hz"] < 300.0
+        assert health["age_ms"] is not None
     assert [reply.sequence for reply in replies] == list(range(len(replies)))
     last = [reply for reply in replies[len(replies) // 2 :] if reply.status == ["followed"]]
     assert len(last) > 100

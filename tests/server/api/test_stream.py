@@ -57,6 +57,14 @@ def test_frames_carry_the_newest_sample(operator: Operator, server: LiveServer) 
     assert all(len(frame["measured"][0]) == 4 for frame in frames)
 
 
+def test_health_is_told_though_nothing_changes(operator: Operator, server: LiveServer) -> None:
+    with server.stream() as stream:
+        subscribe(stream, topics=["session"])
+        first, second = (received(stream, "session") for _ in range(2))
+    assert first["revision"] == second["revision"]
+    assert second["session"]["health"]["ticks"] > first["session"]["health"]["ticks"]
+
+
 def test_every_sample_in_binary_without_a_gap(operator: Operator, server: LiveServer) -> None:
     with server.stream() as stream:
         subscribe(stream, topics=["telemetry"], rate_hz=20, encoding="binary", every_sample=True)

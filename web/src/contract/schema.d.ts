@@ -1174,6 +1174,44 @@ export interface components {
             type: "opened";
         };
         /**
+         * LiveOut
+         * @description The live source that is loaded.
+         */
+        LiveOut: {
+            /** Accepted */
+            accepted: number;
+            /**
+             * Age Ms
+             * @description How far the attitude flown lies beyond the newest sample; negative: known ahead; null: not heard
+             */
+            age_ms: number | null;
+            /**
+             * Bad
+             * @description No samples at all
+             */
+            bad: number;
+            /**
+             * Clock Steps
+             * @description How often the source's clock began anew
+             */
+            clock_steps: number;
+            /**
+             * Dropped
+             * @description Late, doubled or overtaken: not used
+             */
+            dropped: number;
+            /**
+             * Rate Hz
+             * @description Samples taken in the last second or so
+             */
+            rate_hz: number;
+            /**
+             * Way Age Ms
+             * @description Since the preview's planner was heard; null: no such method
+             */
+            way_age_ms: number | null;
+        };
+        /**
          * LiveProblem
          * @description A message that was not used; the connection goes on, but where the rig process is gone.
          */
@@ -2047,6 +2085,7 @@ export interface components {
             lateness_us: {
                 [key: string]: number;
             };
+            live?: components["schemas"]["LiveOut"] | null;
             /** Rate Hz */
             rate_hz: number;
             /**

@@ -11,6 +11,7 @@ export type Health = Schemas["HealthOut"];
 export type Lease = Schemas["LeaseOut"];
 export type LeaseAction = Schemas["LeaseIn"]["action"];
 export type LeaseToken = Schemas["LeaseToken"];
+export type LiveHealth = Schemas["LiveOut"];
 export type Method = Schemas["MethodOut"];
 export type MethodFigures = Schemas["MethodFiguresOut"];
 export type Peak = Schemas["PeakOut"];
