@@ -1,7 +1,7 @@
 """Fly JSBSim live on a rig of a running server, and say how well the rig follows.
 
     fullpose serve                                    # in another terminal
-    python examples/live_jsbsim.py [--url http://127.0.0.1:8642] [--rig vertical-4] [--seconds 20]
+    python examples/live_jsbsim.py [--url http://127.0.0.1:8642] [--rig vertical-4] [--method exact] [--seconds 20]
 
 JSBSim (pip install jsbsim) integrates a Cessna 172 in real time, a hand on the stick sways it, and every 5 ms its
 attitude goes to the rig over the WebSocket. The reply to each sample says what the rig was told, and how far from it.
@@ -9,6 +9,7 @@ attitude goes to the rig over the WebSocket. The reply to each sample says what 
 
 import argparse
 import asyncio
+import contextlib
 import json
 import math
 import os
@@ -18,7 +19,7 @@ from typing import Any
 import jsbsim
 from websockets.asyncio.client import ClientConnection
 
-from server.client import Client
+from server.client import Client, ClientError
 
 RATE_HZ = 200
 
@@ -69,23 +70,26 @@ async def renew(client: Client, rig: str) -> None:
         await client.take_lease(rig, "renew")
 
 
-async def fly(url: str, rig: str, seconds: float) -> None:
+async def fly(url: str, rig: str, method: str, seconds: float) -> None:
     """Take the rig, follow JSBSim, stop, and give the rig back."""
     replies: list[dict[str, Any]] = []
     async with Client(url, name="jsbsim") as client:
         await client.take_lease(rig)
         if (await client.session(rig))["state"] == "disconnected":
             await client.command(rig, "connect")
-        async with client.live(rig, method="exact", convention="ned") as link:
+        async with client.live(rig, method=method, convention="ned") as link:
             await client.command(rig, "arm")
             await client.command(rig, "go_live")
             beside = [asyncio.create_task(gather(link, replies)), asyncio.create_task(renew(client, rig))]
             await send(link, aircraft(), seconds)
-            await client.stop(rig)  # without it the rig would stop by itself, and say that its source was lost
+            with contextlib.suppress(ClientError):  # it has stopped by itself: its alarms say why
+                await client.stop(rig)  # without it the rig would stop by itself, and say that its source was lost
             for task in beside:
                 task.cancel()
             await asyncio.gather(*beside, return_exceptions=True)
-        await client.wait_state(rig, "armed", "faulted")
+        session = await client.wait_state(rig, "armed", "faulted")
+        for alarm in session["alarms"]:
+            print(f"{alarm['severity']}: {alarm['message']}")
         for word in ("disarm", "unload"):
             await client.command(rig, word)
         await client.release_lease(rig)
@@ -113,9 +117,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Fly JSBSim live on a rig.")
     parser.add_argument("--url", default="http://127.0.0.1:8642")
     parser.add_argument("--rig", default="vertical-4")
+    parser.add_argument("--method", default="exact", help="one that keeps the limits, or preview")
     parser.add_argument("--seconds", type=float, default=20.0)
     given = parser.parse_args()
-    asyncio.run(fly(given.url, given.rig, given.seconds))
+    asyncio.run(fly(given.url, given.rig, given.method, given.seconds))
 
 
 if __name__ == "__main__":
