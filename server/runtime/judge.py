@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,8 +70,13 @@ class Judge:
         if not loop.enabled or loop.drive_brakes:
             return math.nan
         error, found = loop.guard.measured(loop.measured, motion.x1, motion.q1)
-        if found is not None and found.code == "attitude_error" and motion.mode is Mode.LIVE and not loop.live.acquired:
-            found = None  # still on the way from where the rig stood to where the source is
+        if found is not None and found.code == "attitude_error" and motion.mode is Mode.LIVE:
+            if not loop.live.acquired:
+                found = None  # still on the way from where the rig stood to where the source is
+            elif loop.live.limited:
+                # The source asks for more than the limits allow, or has jumped after a gap: the rig does as it should,
+                # and is on its way to regain the attitude. Said, but no reason to stop.
+                found = replace(found, trips=False)
         if found is not None:
             if found.trips and found.code == "following_error":
                 loop.let_drive_brake(now)

@@ -304,3 +304,38 @@ def test_nonsense_from_the_source_is_named_and_moves_nothing(tmp_path: Path) -> 
             within_limits(host.samples(0, 1 << 20)[0], host)
 
     asyncio.run(fly())
+
+
+def test_a_source_that_jumps_is_regained_inside_the_limits_and_no_fault(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path, guard=PATIENT, live=LiveConfig(extrapolate_ms=500.0, delay_ms=20.0))
+        async with hosted(config) as (host, operator):
+            await operator.take()
+            await operator.must("connect")
+            await operator.must("load", live={})
+            await operator.must("arm")
+            with host.live_socket() as source:
+                await operator.must("go_live")
+                begun = time.monotonic()
+                sequence = 0
+                while (t := time.monotonic() - begun) < 5.0:
+                    # Reached by 2 s; from then on 40 deg elsewhere, as after a gap in which nobody saw it turn.
+                    there = quaternion_from_euler(math.radians(10.0 if t < 2.0 else 50.0), 0.0, 0.0)[0]
+                    source.send(encode_sample(Kind.QUATERNION, sequence, t, tuple(there), (0.0, 0.0, 0.0)))
+                    sequence += 1
+                    if sequence % 200 == 0:
+                        await host.lease("renew", operator.who)
+                    await asyncio.sleep(0.002)
+                snapshot = host.snapshot()
+                assert snapshot.state == "live", snapshot.alarms
+                (said,) = [alarm for alarm in snapshot.alarms if alarm.code == "attitude_error"]
+                assert said.severity == "warning"
+                newest = host.latest()
+                assert newest is not None
+                assert newest["solve_error_deg"][0] <= 1e-9  # regained
+            await operator.until("armed")
+            rows, _ = host.samples(0, 1 << 20)
+            within_limits(rows, host)
+            assert np.nanmax(rows["solve_error_deg"]) > 30.0
+
+    asyncio.run(fly())
