@@ -27,7 +27,7 @@ class Settings(BaseSettings):
     allowed_origins: tuple[str, ...] = ()  # pages of other origins that may use the API
     max_upload_bytes: int = Field(default=512 * 1024 * 1024, gt=0)
     max_solve_samples: int = Field(default=1_000_000, gt=0)
-    rig_rate_hz: float = Field(default=1000.0, gt=0.0, le=10_000.0)
+    rig_rate_hz: float = Field(default=1000.0, ge=100.0, le=4000.0)  # as `RigConfig` has it
     live_udp_ports: dict[str, int] = {}  # rig name to the port where its live source is heard, on loopback
     live_delay_ms: float = Field(
         default=5.0, ge=0.0, le=1000.0

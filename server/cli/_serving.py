@@ -8,6 +8,10 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+from pydantic_settings import SettingsError
+
 from server.cli._exit import fail
 from server.settings import Settings
 
@@ -26,11 +30,19 @@ def settings_of(host: str | None, port: int | None, data_dir: Path | None) -> Se
     given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir}
     try:
         settings = Settings(**{key: value for key, value in given.items() if value is not None})
-    except ValueError as error:
+    except ValidationError as error:
+        fail("; ".join(_told(wrong) for wrong in error.errors()))
+    except SettingsError as error:  # a variable that should be JSON and is none
         fail(f"settings: {error}")
     if not settings.loopback and not settings.allow_unauthenticated_network:
         fail(f"--host {settings.host}: {UNAUTHENTICATED}")
     return settings
+
+
+def _told(wrong: ErrorDetails) -> str:
+    name = "_".join(str(part) for part in wrong["loc"])
+    word = wrong["msg"].replace("Input should be", "expected").replace("Value error, ", "")
+    return f"FULLPOSE_{name.upper()} = {wrong['input']!r}: {word}"
 
 
 def run(settings: Settings, ready: Ready) -> None:
