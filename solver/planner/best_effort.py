@@ -16,9 +16,11 @@ from solver.limits import ACCELERATION, MAX, MIN, approach_rate, limit_box, limi
 from solver.methods import METHODS
 from solver.planner.basis import WIDTH, Basis, spline_basis
 from solver.planner.options import PlanOptions
+from solver.planner.preview_flight import PreviewFlight
 from solver.planner.programme import Answer, Equality, QuadraticProgramme, solve_programme
 from solver.planner.refine import MET, NEAR, STRIDE, Limits, cost_weights, rig_limits, worst
 from solver.planner.rows import ROW, Flags, displaced, error_bands, limit_rows, over_limits
+from solver.planner.way import PreviewOptions
 from solver.rig import Rig
 from solver.solution import EXACT, limited_code
 from solver.start import start_pose
@@ -29,7 +31,12 @@ PADDING = 0.25  # [s] of the exact path given up on each side of a place outside
 ERROR_WEIGHT = 1e4  # [1/rad^2] beside rates and accelerations squared as shares of their limits
 SLACK_COST = 1e5  # of a limit exceeded by its whole: the limits win over the attitude
 LARGEST_PADDING = 4.0  # [s]; beyond it the whole flight starts again from a path inside the limits
-LONGEST = 60.0  # [s] of a flight whose frames are all set free at once
+LONGEST = 60.0  # [s] of a stretch whose frames are all set free at once
+FORESIGHTS = (
+    (4.0, 0.2),
+    (8.0, 0.5),
+)  # [s] known and [s] between two ways, of the previews a hopeless flight begins from
+FORESEEN = 600.0  # [s] of a flight that they are tried for: they take a tenth of its length
 EXACT_ERROR = 1e-12  # [rad] above which a sample counts as limited
 APART = 8  # samples of the exact path at least between two stretches
 TRUST = 0.5  # [rad] a frame moves in one iteration at most
@@ -100,30 +107,54 @@ def least_error(
 def feasible(time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None) -> Array:
     """A path (n, 4) [rad] inside every limit, whatever its attitude error.
 
-    A four-axis rig's by the `exact` step method; a three-axis rig's by following `angles` frame by frame.
+    A four-axis rig's by the step method `exact`, or by `preview`, which may know much of the flight here, where that
+    comes closer; a three-axis rig's by following `angles` frame by frame.
     """
-    if rig.geometry.redundant:
-        method = METHODS["exact"]
-        return method.stepper(rig, method.options(), start, attitude[0]).block(time, attitude).angles
-    x = np.empty_like(angles)
-    follow(limit_table(rig), time, angles, x)
-    return x
+    if not rig.geometry.redundant:
+        x = np.empty_like(angles)
+        follow(limit_table(rig), time, angles, x)
+        return x
+    method = METHODS["exact"]
+    ways = [method.stepper(rig, method.options(), start, attitude[0]).block(time, attitude).angles]
+    if time[-1] - time[0] <= FORESEEN:
+        for preview_s, replan_s in FORESIGHTS:
+            options = PreviewOptions(preview_s=preview_s, replan_s=replan_s)
+            ways.append(PreviewFlight(rig, options, start, time, attitude).block(time, attitude).angles)
+    return min(ways, key=lambda way: float(np.mean(attitude_errors(payload_attitudes(rig, way), attitude)[0] ** 2)))
 
 
 def from_feasible(
     time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None
 ) -> BestEffort:
-    """The least error next to a path inside the limits; as it is where the flight is longer than `LONGEST`."""
+    """The least error next to a path (n, 4) [rad] inside the limits, stretch by stretch where it is not exact.
+
+    A stretch that is longer than `LONGEST`, or does not get better, stays as it is.
+    """
     n = len(time)
     limits = rig_limits(rig)
-    error, _ = attitude_errors(payload_attitudes(rig, angles), attitude)
+    x = angles.copy()
     codes = np.full(n, limited_code(0, 1), np.int16)
-    x = angles
-    if n > 1 and time[-1] - time[0] <= LONGEST:
-        freed, codes, over = _free(time, attitude, angles, rig, options, (False, False), start)
-        after, _ = attitude_errors(payload_attitudes(rig, freed), attitude)
-        if over <= MET and float(np.mean(after**2)) < float(np.mean(error**2)):
-            x, error = freed, after
+    error, _ = attitude_errors(payload_attitudes(rig, x), attitude)
+    lost = np.flatnonzero(error > EXACT_ERROR)
+    for stretch in _merged([_Stretch(int(k), int(k) + 1, PADDING) for k in lost], time) if n > 1 else []:
+        begin, end = stretch.range(time)
+        part = slice(begin, end)
+        if time[end - 1] - time[begin] > LONGEST:
+            continue
+        pinned = (begin > 0, end < n)
+        freed, code, over = _free(
+            time[part], attitude[part], x[part], rig, options, pinned, start if begin == 0 else None
+        )
+        after, _ = attitude_errors(payload_attitudes(rig, freed), attitude[part])
+        if over > MET or float(np.mean(after**2)) >= float(np.mean(error[part] ** 2)):
+            continue
+        before = x[part].copy()
+        x[part] = freed
+        beside = slice(max(0, begin - 2), min(n, end + 2))
+        if worst(time[beside], x[beside], limits)[0] > MET:
+            x[part] = before
+        else:
+            error[part], codes[part] = after, code
     return BestEffort(x, np.where(error > EXACT_ERROR, codes, EXACT).astype(np.int16), worst(time, x, limits)[0])
 
 

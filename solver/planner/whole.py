@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solver.planner.best_effort import BestEffort, feasible, from_feasible, least_error
-from solver.planner.chain import Avoid, Chain, Programme
 from solver.planner.curve import polish
 from solver.planner.lead import lead_in, lead_out
-from solver.planner.nodes import OVERLAP, lattice
+from solver.planner.nodes import OVERLAP
 from solver.planner.options import PlanOptions
-from solver.planner.path import Path, overrun, refine_path, smooth_curve, stage_samples
+from solver.planner.path import Path, overrun
 from solver.planner.refine import MET
-from solver.planner.three_axis import three_axis_path, turns_into_range
+from solver.planner.search import Search
+from solver.planner.three_axis import three_axis_path
 from solver.planner.verdict import Margins, Verdict, check, margins
 from solver.rig import FRAMES, LIMITS, Rig
 from solver.solution import EXACT, Blocking, Solution
@@ -26,9 +26,6 @@ Progress = Callable[[int, int], None]
 STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a chain
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
 EXCESS = 100.0  # cost of going over a rate limit by its whole, for a flight without a chain
-AVOID_RADIUS = math.radians(30.0)
-AVOID_COST = 5.0  # [1/s], beside rates squared as shares of their limits
-AVOID_TIME = 0.4  # [s] before and after
 
 
 @dataclass(frozen=True)
@@ -51,98 +48,6 @@ class Plan:
     def ready(self) -> bool:
         """Whether a rig can fly it: feasible, with a way from rest to it and back to rest."""
         return self.verdict.feasible and not self.lead_note
-
-
-class _Search:
-    """One flight's search for a path; keeps what the attempts share."""
-
-    def __init__(
-        self, time: Array, attitude: Array, rig: Rig, start: Array | None, start_rate: Array | None,
-        options: PlanOptions, progress: Progress | None,
-    ) -> None:  # fmt: skip
-        self.time, self.attitude, self.rig, self.options, self.progress = time, attitude, rig, options, progress
-        self.start, self.start_rate = start, start_rate
-        self.counted = np.zeros(4, np.bool_)
-        self.avoid: list[Avoid] = []
-        self.margin_gain = 1.0
-        self.chains = 0
-        self.samples = stage_samples(time, options.stage)
-
-    def chain(self, grid: float, slack: float = 0.0, stretch: float = 1.0, excess: float = 0.0) -> Chain:
-        """The cheapest chain on a grid [rad]; turns of the wide frames counted only as far as their ranges need it."""
-        low, high = self.rig.position_min, self.rig.position_max
-        while True:
-            programme = Programme(
-                self.time[self.samples], self.attitude[self.samples], self.rig,
-                lattice(self.rig, grid, self.counted, slack), self.options, slack,
-            )  # fmt: skip
-            programme.avoid = self.avoid
-            programme.margin_gain = self.margin_gain
-            if self.start is not None and self.start_rate is not None:
-                programme.motion = self.start, self.start_rate
-            programme.stretch, programme.excess = stretch, excess
-            chain = programme.run(self.start, self._report(0.0, 0.5))
-            if not chain.found:
-                return chain
-            angles = chain.angles
-            free = np.isfinite(high) & (high - low >= 2.0 * math.pi) & ~self.counted
-            if self.start is None and free.any():
-                shift = np.zeros(4)
-                shift[free] = turns_into_range(angles[:, free], low[free], high[free])
-                angles += shift
-            outside = free & ((angles.min(axis=0) < low - slack) | (angles.max(axis=0) > high + slack))
-            if not outside.any():
-                return chain
-            self.counted |= outside
-
-    def curve(self, chain: Chain) -> Array:
-        """The smooth exact path along a chain (n, 4) [rad]."""
-        return smooth_curve(self.time, self.attitude, self.rig, self.samples, chain, self.start)
-
-    def refine(self, chain: Chain) -> Path:
-        """A path along a chain."""
-        self.chains += 1
-        return refine_path(
-            self.time, self.attitude, self.curve(chain), self.rig, self.options, start=self.start is not None,
-            start_rate=self.start_rate, progress=self._report(0.5, 0.5),
-        )  # fmt: skip
-
-    def steer_away(self, path: Path) -> None:
-        """Make the places where a path failed dear to the chains to come."""
-        for failure in path.failures:
-            reach = max(AVOID_TIME, self.options.stage)
-            first = float(self.time[failure.sample]) - reach
-            part = slice(*np.searchsorted(self.time, (first, first + 2.0 * reach)))
-            self.avoid.append(Avoid(self.time[part], path.angles[part].copy(), AVOID_RADIUS, AVOID_COST))
-
-    def alternative(self, attempt: int, grid: float, slack: float) -> Chain:
-        """Another chain, after some have failed.
-
-        First without a price on the singularity: a flight that must pass through it is better off going straight.
-        Then away from the places that failed; then on a grid twice as fine with stages half as far apart; then with
-        four times the price on the singularity; then as the second, ever farther away.
-        """
-        avoid = self.avoid
-        self.margin_gain = 0.0 if attempt == 1 else 4.0 if attempt == 4 else 1.0
-        if attempt in (1, 4):
-            self.avoid = []
-        if attempt == 3 and grid > self.options.fine_grid:
-            self.samples = stage_samples(self.time, 0.5 * self.options.stage)
-            self.avoid = []
-            grid = 0.5 * grid
-        chain = self.chain(grid, slack)
-        self.avoid = avoid
-        return chain
-
-    def _report(self, begin: float, share: float) -> Progress | None:
-        if self.progress is None:
-            return None
-        n, tell = len(self.time), self.progress
-
-        def report(done: int, total: int) -> None:
-            tell(min(n - 1, int(n * (begin + share * done / total))), n)
-
-        return report
 
 
 def plan(
@@ -175,7 +80,7 @@ def plan(
     at = None
     if near is not None:
         at, _ = start_pose(rig, C[0], near)
-    search = _Search(t, C, rig, at, rate if len(t) > 1 else None, options, progress)
+    search = Search(t, C, rig, at, rate if len(t) > 1 else None, options, progress)
     return _finished(t, C, rig, _fly(search), search.chains, begin, clock)
 
 
@@ -191,7 +96,7 @@ class _Flown:
     grid: float
 
 
-def _fly(search: _Search) -> _Flown:
+def _fly(search: Search) -> _Flown:
     """Chains, refined, until one is inside the limits; else the least error."""
     options, time, rig = search.options, search.time, search.rig
     n = len(time)
@@ -242,7 +147,7 @@ def _fly(search: _Search) -> _Flown:
     return _Flown(effort.angles, path.iterations, effort.limited, "acceleration", blocking, grid)
 
 
-def _least_error(search: _Search) -> BestEffort:
+def _least_error(search: Search) -> BestEffort:
     """For a flight without a chain: from the chain that is least over the limits, the least attitude error."""
     search.avoid.clear()
     time, attitude, rig, options = search.time, search.attitude, search.rig, search.options
