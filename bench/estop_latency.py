@@ -14,6 +14,7 @@ import dataclasses
 import http.client
 import os
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -47,16 +48,20 @@ def ask(port: int) -> None:
 
 
 class OpenStream:
-    """A stream that a console has open all the time."""
+    """A stream that a console has open all the time, and reads all the time."""
 
     def __init__(self, port: int) -> None:
         self._viewer = Viewer(port, RIG)
+        self._viewer.link.setblocking(True)
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self) -> None:
+        with contextlib.suppress(OSError):
+            while self._viewer.read():
+                pass
 
     def ask(self) -> None:
-        """Request the E-stop over it; what it has been sent meanwhile is read first, pings are answered."""
-        with contextlib.suppress(BlockingIOError):
-            while True:
-                assert self._viewer.read()
+        """Request the E-stop over it."""
         self._viewer.send(b'{"type":"estop"}')
 
 

@@ -87,6 +87,7 @@ class Viewer:
         self._need = 0  # bytes of the message under way that have not come
         self._rest = b""  # a header that has not come whole
         self.link = socket.create_connection(("127.0.0.1", port), timeout=60)
+        self.link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as browsers do
         key = base64.b64encode(os.urandom(16)).decode()
         self.link.sendall(
             f"GET /api/v1/rigs/{rig}/stream HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\n"
