@@ -186,7 +186,11 @@ def test_a_live_source_is_followed_until_it_is_gone(page: Page, server: Server, 
     console.take_control()
     console.give("connect", "idle")
     page.get_by_role("button", name="Live source").click()
+    ahead = page.get_by_label("Seconds told ahead")
     page.get_by_label("Live method").select_option("exact")
+    expect(ahead).to_be_hidden()
+    page.get_by_label("Live method").select_option("preview")
+    ahead.fill("0.2")
     page.get_by_role("button", name="Load live").click()
     console.expect_state("ready")
     live = page.get_by_test_id("live")
@@ -202,6 +206,7 @@ def test_a_live_source_is_followed_until_it_is_gone(page: Page, server: Server, 
         before = console.angles()
         console.until(lambda: apart(before, console.angles()) > 1.0, 20.0)
         console.until(lambda: console.error("solve") < 1e-9, 20.0)  # but while it is late
+        expect(page.get_by_test_id("live-figures")).to_have_text(re.compile(r"\d+ Hz · \d+ ms (ahead|late)"))
         page.screenshot(path=shots / "operate-live.png")
     finally:
         over.set()
