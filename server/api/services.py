@@ -55,6 +55,7 @@ class Services:
     scenes: Scenes
     frames: dict[str, FrameSource] = field(default_factory=dict)
     live_sources: set[str] = field(default_factory=set)  # rigs that have one connected
+    replays: set[str] = field(default_factory=set)  # scenes of the records that are played
     started: float = field(default_factory=time.time)
 
 

@@ -7,6 +7,7 @@ import asyncio
 import secrets
 import time
 from collections.abc import AsyncIterator, Awaitable
+from pathlib import Path
 from typing import Any
 
 from fastapi import APIRouter, WebSocket
@@ -15,7 +16,7 @@ from server.api.frame_source import FrameSource
 from server.api.frames import record
 from server.api.playback import PlaybackError, RunPlayback
 from server.api.problems import ApiError
-from server.api.services import ServicesDep
+from server.api.services import Services, ServicesDep
 from server.api.session_view import replayed_session
 from server.api.stream_client import StreamClient
 from server.api.wire import Wire
@@ -25,6 +26,7 @@ from server.runtime.replay import RecordError
 from server.runtime.telemetry import SAMPLE
 from server.store.errors import FileError
 
+MOST_REPLAYS = 8  # ten minutes at 1 kHz are some 200 MB
 LOOK_S = 1.0 / 30.0
 router = APIRouter(tags=["stream"])
 
@@ -33,12 +35,24 @@ router = APIRouter(tags=["stream"])
 async def replay_stream(run: str, socket: WebSocket, services: ServicesDep) -> None:
     """hello, then what the client subscribes to; seek, speed, pause and play move the clock of this client alone."""
     path = await asyncio.to_thread(services.runs.path, run)
+    if len(services.replays) >= MOST_REPLAYS:
+        raise ApiError(503, "too-many-replays", f"{MOST_REPLAYS} records are being played: each is held in memory")
+    # Of this client alone: others replay the same run at other times. No rig has a ~ in its name.
+    scene = f"run-{run}~{secrets.token_hex(4)}"
+    services.replays.add(scene)
+    try:
+        await _play(run, scene, path, socket, services)
+    finally:
+        services.replays.discard(scene)
+
+
+async def _play(run: str, scene: str, path: Path, socket: WebSocket, services: Services) -> None:
     rig = (await asyncio.to_thread(services.runs.get, run)).rig
     try:
         playback = await asyncio.to_thread(RunPlayback, path)
     except RecordError as error:
         raise FileError(path.name, f"a record ({error})") from None
-    source = _Run(playback, rig)
+    source = _Run(playback, rig, scene)
     await asyncio.to_thread(services.scenes.add, source.scene, rig, source.newest)
     try:
         await socket.accept()
@@ -48,12 +62,11 @@ async def replay_stream(run: str, socket: WebSocket, services: ServicesDep) -> N
 
 
 class _Run:
-    def __init__(self, playback: RunPlayback, rig: str) -> None:
+    def __init__(self, playback: RunPlayback, rig: str, scene: str) -> None:
         self._playback = playback
         self._rig = rig
         self._begun = False
-        # Of this client alone: others replay the same run at other times. No rig has a ~ in its name.
-        self.scene = f"run-{playback.run}~{secrets.token_hex(4)}"
+        self.scene = scene
 
     def hello(self) -> Hello:
         first = self._playback.latest()

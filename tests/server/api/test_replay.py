@@ -1,5 +1,6 @@
 """A recorded run played again, over the stream's protocol and in a scene of its own."""
 
+import contextlib
 import json
 import time
 from pathlib import Path
@@ -12,6 +13,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from server.api.playback import PlaybackError, RunPlayback
+from server.api.routes.replay import MOST_REPLAYS
 from server.runtime.replay import read_samples
 from server.runtime.telemetry import SAMPLE
 from server.session.states import STATES
@@ -178,3 +180,21 @@ def test_the_clock_of_a_replay(server: LiveServer, run: str) -> None:
         with pytest.raises(PlaybackError):
             playback.seek(wrong)
     assert playback.rate_hz == pytest.approx(server.settings.rig_rate_hz, rel=0.05)
+
+
+def test_so_many_records_are_played_at_once_and_no_more(server: LiveServer, run: str) -> None:
+    with contextlib.ExitStack() as open_:
+        for _ in range(MOST_REPLAYS):
+            received(open_.enter_context(replay(server, run)), "hello")
+        with pytest.raises(InvalidStatus) as refused:
+            replay(server, run).close()
+        assert refused.value.response.status_code == 503
+    for _ in range(100):  # the last one's end may take the server a moment
+        try:
+            with replay(server, run) as stream:
+                received(stream, "hello")
+            break
+        except InvalidStatus:
+            time.sleep(0.05)
+    else:
+        raise AssertionError("no room though nobody replays")
