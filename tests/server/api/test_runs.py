@@ -40,7 +40,10 @@ def test_csv_parquet_and_mcap_are_the_same_samples(server: LiveServer, run: str,
     assert list(lines[0]) == table.column_names
     np.testing.assert_array_equal([float(line["demand_base_deg"]) for line in lines], rows["demand"][:, 0])
     assert {line["state"] for line in lines} >= {"positioning", "running"}
-    assert list((server.settings.data_dir / "exports").iterdir()) == []
+    deadline = time.monotonic() + 10.0  # it goes once the last byte is sent
+    while left := list((server.settings.data_dir / "exports").iterdir()):
+        assert time.monotonic() < deadline, left
+        time.sleep(0.01)
 
 
 def test_what_is_no_run(server: LiveServer, run: str) -> None:
