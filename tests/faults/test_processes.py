@@ -134,9 +134,10 @@ def test_a_killed_recorder_loses_no_more_than_a_chunk_and_is_replaced_at_rest(tm
     asyncio.run(fly())
 
 
+@pytest.mark.parametrize("seed", range(MOMENTS if "FULLPOSE_FAULTS" in os.environ else 1))
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
 def test_a_dead_or_stopped_server_leaves_the_rig_held_and_the_session_is_adopted(
-    tmp_path: Path, how: signal.Signals
+    tmp_path: Path, how: signal.Signals, seed: int
 ) -> None:
     config = config_of(tmp_path, server=QUICK)
     plan = written(tmp_path / "plan", plan_of(config.rig, 8.0))
@@ -149,7 +150,7 @@ def test_a_dead_or_stopped_server_leaves_the_rig_held_and_the_session_is_adopted
     try:
         word, pid = process.stdout.readline().split()
         assert word == "running"
-        time.sleep(1.0)
+        time.sleep(float(np.random.default_rng(seed).uniform(0.1, 4.0)))
         process.send_signal(how)
         if how == signal.SIGKILL:
             process.wait()
