@@ -49,7 +49,7 @@ def test_a_clock_that_is_set_in_flight_disturbs_nothing(tmp_path: Path, monkeypa
                 draft.replace(clock)
             snapshot = await operator.until("armed", "faulted", "held")
             assert snapshot.state == "armed", snapshot.alarms
-            assert [a.code for a in snapshot.alarms if a.code != "lateness"] == []  # a starved machine may be late
+            assert [a.code for a in snapshot.alarms if a.code not in ("lateness", "missed_deadlines")] == []
             assert snapshot.lease.holder == operator.who
             rows, _ = host.samples(0, 1 << 20)
             within_limits(rows, host)
