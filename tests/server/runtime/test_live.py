@@ -255,7 +255,9 @@ def test_a_source_is_followed_exactly_and_its_loss_is_a_controlled_stop(tmp_path
                 settled = last[len(last) // 2 :]
                 assert max(r.error_deg for r in settled) <= 1e-9
                 assert max(r.lag_deg for r in settled) < 3.0  # the delay, times the rate
-                assert min(r.margin for r in settled) > 0.0
+                # Gaps of a starved sender are caught up at the acceleration limit: there none is left.
+                assert all(0.0 <= r.margin <= 1.0 for r in settled)
+                assert np.median([r.margin for r in settled]) > 0.1
             snapshot = await operator.until("armed", "faulted")
             assert snapshot.state == "armed", snapshot.alarms
             assert "live_source_lost" in [a.code for a in snapshot.alarms]
