@@ -1,4 +1,8 @@
-"""The rig process's end of the control socket: polled once a tick, never blocking, a few messages at a time."""
+"""The rig process's end of the control socket: polled once a tick, never blocking, a few messages at a time.
+
+Who is slow to read its answers is not read either until it has: one answer waits for it, and its requests queue in the
+socket, with whoever sends them. None is lost, and none is obeyed without being answered.
+"""
 
 import select
 import socket
@@ -24,6 +28,7 @@ class ControlServer:
             self._listener.bind(address)
         self._listener.listen(_CLIENTS)
         self._clients: dict[int, socket.socket] = {}
+        self._unsent: dict[int, bytes] = {}  # the answer that a full socket has not taken yet
         self._poll = select.epoll()
         self._poll.register(self._listener.fileno(), select.EPOLLIN)
 
@@ -32,6 +37,8 @@ class ControlServer:
         for fd, _ in self._poll.poll(0, _PER_TICK):
             if fd == self._listener.fileno():
                 self._accept()
+            elif fd in self._unsent:
+                self._send(fd, self._unsent[fd])
             else:
                 self._read(fd)
 
@@ -70,11 +77,21 @@ class ControlServer:
         except (msgspec.DecodeError, UnicodeDecodeError):
             self._drop(fd)  # not our server: it gets no second try
             return
+        self._send(fd, wire.encode(self._handle(request)))
+
+    def _send(self, fd: int, answer: bytes) -> None:
         try:
-            client.send(wire.encode(self._handle(request)))
+            self._clients[fd].send(answer)
+        except BlockingIOError:
+            self._unsent[fd] = answer
+            self._poll.modify(fd, select.EPOLLOUT)
         except OSError:
-            self._drop(fd)  # it does not read its answers
+            self._drop(fd)  # gone before its answer
+        else:
+            if self._unsent.pop(fd, None) is not None:
+                self._poll.modify(fd, select.EPOLLIN)
 
     def _drop(self, fd: int) -> None:
+        self._unsent.pop(fd, None)
         self._poll.unregister(fd)
         self._clients.pop(fd).close()

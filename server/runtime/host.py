@@ -58,6 +58,7 @@ class RigHost:
         self._place = Place(config.directory)
         self._shared: Shared | None = None
         self._link: ControlLink | None = None
+        self._linking = asyncio.Lock()
         self._launcher = Launcher(self._place)
         self._pid = 0
         self._pidfd = -1
@@ -92,18 +93,17 @@ class RigHost:
             self._watch.cancel()
             await asyncio.gather(self._watch, return_exceptions=True)
         if stop_rig and self._link is not None and not self._dead:
-            await self._end_process(self._link)
+            await self._end_process()
         await self._detach()
         if self._beat is not None:
             self._beat.join()
 
-    async def _end_process(self, link: ControlLink) -> None:
+    async def _end_process(self) -> None:
         deadline = time.monotonic() + _END_S
         while not self._ended():
             # Refused while the rig moves, and answered with an E-stop: ask again when it is at rest.
             with contextlib.suppress(RigUnreachableError):
-                if link.open_for_requests:
-                    await link.request("exit", "server", timeout_s=REPLY_S)
+                await (await self._open_link()).request("exit", "server", timeout_s=REPLY_S)
             await asyncio.sleep(0.05)
             if time.monotonic() > deadline:
                 raise HostError(f"rig process {self._pid} of {self.name} does not end")
@@ -323,12 +323,23 @@ class RigHost:
         body = wire.ErrorBody("illegal_command", message, before, command, can)
         return wire.Reply(False, before, after, self.revision, body)
 
+    async def _open_link(self) -> ControlLink:
+        """The link to the process, opened anew where it has broken. Raises `RigUnreachableError`."""
+        async with self._linking:
+            assert self._link is not None
+            if not self._link.open_for_requests:
+                link = ControlLink()
+                await link.open(self._place)
+                await self._link.close()
+                self._link = link
+            return self._link
+
     async def _ask(self, before: str, word: str, op: str, who: str, **rest: Any) -> wire.Answer:
         if self._dead or self._link is None:
             return wire.Answer(0, self._unreachable(before, word, "the rig process is not running"))
         try:
             timeout_s = LOAD_S if word == Command.LOAD else REPLY_S
-            answer = await self._link.request(op, who, timeout_s=timeout_s, **rest)
+            answer = await (await self._open_link()).request(op, who, timeout_s=timeout_s, **rest)
         except RigUnreachableError as cause:
             return wire.Answer(0, self._unreachable(before, word, str(cause)))
         return replace(answer, reply=replace(answer.reply, revision=answer.reply.revision + self._offset))

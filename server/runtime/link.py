@@ -64,6 +64,8 @@ class ControlLink:
             raise RigUnreachableError(f"the rig process cannot be reached ({cause})") from cause
         finally:
             self._waiting.pop(number, None)
+            if waiting.done() and not waiting.cancelled():
+                waiting.exception()  # told above, where it is one
 
     async def close(self) -> None:
         """Close the connection; waiting requests raise."""

@@ -1,6 +1,7 @@
 """A whole rig process, really running at 1 kHz on the simulated drive, through `RigHost`."""
 
 import asyncio
+import time
 from pathlib import Path
 
 import numpy as np
@@ -68,9 +69,7 @@ def test_hold_resume_stop_estop_reset(tmp_path: Path) -> None:
         config = config_of(tmp_path)
         plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
         async with hosted(config) as (host, operator):
-            await operator.arm(plan)
-            await operator.must("start")
-            await operator.until("running")
+            await operator.fly(plan)
             await asyncio.sleep(2.0)
             await operator.must("hold")
             await asyncio.sleep(1.5)
@@ -182,3 +181,21 @@ def test_a_plan_of_another_rig_is_refused(tmp_path: Path) -> None:
             assert reply.state_after == "idle"
 
     asyncio.run(load())
+
+
+def test_a_link_that_the_process_drops_is_opened_anew(tmp_path: Path) -> None:
+    async def fly() -> None:
+        async with hosted(config_of(tmp_path)) as (host, operator):
+            await operator.take()
+            link = host._link
+            assert link is not None
+            link._socket.send(b"no request")  # dropped for it, as is who does not read its answers
+            deadline = time.monotonic() + 5.0
+            while link.open_for_requests:
+                assert time.monotonic() < deadline
+                await asyncio.sleep(0.01)
+            await operator.must("connect")
+            assert host._link is not link
+            assert host.snapshot().state == "idle"
+
+    asyncio.run(fly())
