@@ -12,7 +12,6 @@ import asyncio
 import contextlib
 import dataclasses
 import http.client
-import os
 import tempfile
 import threading
 import time
@@ -23,18 +22,13 @@ import numpy as np
 
 from bench.machine import machine
 from bench.rig_load import Viewer, loaded, post, served
+from server.cli._event_loop import before_others
 from server.runtime.config import RigConfig
 from server.runtime.host import RigHost
 from solver.rig import builtin_rigs
 from tests.server.runtime.rigs import Operator, plan_of, written
 
 RIG = "vertical-4"
-
-
-def real_time() -> None:
-    """Run before what is not real-time, as the server's event loop does: measured is it, not who asks."""
-    with contextlib.suppress(PermissionError):
-        os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(1))
 
 
 def ask(port: int) -> None:
@@ -90,7 +84,7 @@ async def stop_once(host: RigHost, plan: Path, over: Callable[[], None], sign: f
 
 
 def _asked(over: Callable[[], None]) -> int:
-    real_time()  # this thread
+    before_others()  # this thread, as the server: measured is that one, not who asks
     asked = time.monotonic_ns()
     over()
     return asked

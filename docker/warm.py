@@ -13,9 +13,9 @@ import numpy as np
 from server.drives import registry
 from server.runtime import warm
 from server.runtime.config import RigConfig
-from server.store.options import method_names
 from solver.attitude import dcm_from_quaternion, quaternion_from_ned
 from solver.errors import MethodError
+from solver.method_options import method_names
 from solver.resample import resample
 from solver.rig import builtin_rigs
 from solver.solve import solve

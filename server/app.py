@@ -84,21 +84,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.scenes = SceneServer()
     problems.install(app)
     app.add_exception_handler(SceneError, _scene_problem)
-    for module in (
-        rigs,
-        trajectories,
-        plans,
-        compare,
-        sessions,
-        scene,
-        stream,
-        live,
-        replay,
-        solve,
-        runs,
-        audit,
-        health,
-    ):
+    for module in ROUTES:
         app.include_router(module.router, prefix=API)
     app.include_router(scene_router, dependencies=[Depends(_scene)])
     app.mount("/", console())
@@ -151,16 +137,15 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         return None if rows is None else rows[0]
 
     def config(rig: str) -> RigConfig:
-        bridged_ms = settings.live_extrapolate_ms  # the guard warns before, and trips where the source is not let go
+        bridged_ms = settings.live_extrapolate_ms
         return RigConfig(
             rig,
             rig_store.get(rig).rig,
             directory(rig),
             run_folder,
             rate_hz=settings.rig_rate_hz,
-            guard=GuardConfig(
-                stale_ms=Tolerance(0.4 * settings.live_extrapolate_ms, 2.0 * settings.live_extrapolate_ms)
-            ),
+            # It warns before the source is let go, and trips where it is not.
+            guard=GuardConfig(stale_ms=Tolerance(0.4 * bridged_ms, 2.0 * bridged_ms)),
             live=LiveConfig(
                 udp_port=settings.live_udp_ports.get(rig),
                 delay_ms=settings.live_delay_ms,

@@ -80,6 +80,3 @@ class LiveProblem(Wire):
 
     type: Literal["problem"] = "problem"
     problem: Problem
-
-
-LiveOut = Annotated[LiveOpened | LiveReplyOut | LiveProblem, Field(discriminator="type")]

@@ -31,7 +31,7 @@ PRIORITY = 1  # of 99; a rig's loop has 60
 def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
     """Serve on `listener` until SIGINT or SIGTERM; the address is the first line of stdout."""
     sys.setswitchinterval(SWITCH_S)
-    _before_others()
+    before_others()
     try:
         with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
             runner.run(_run(settings, listener, url, ready))
@@ -41,7 +41,7 @@ def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -
         fail(str(error), 1)
 
 
-def _before_others() -> None:
+def before_others() -> None:
     """Run this thread before all that is not real-time, where the system lets us, and after the rigs' loops.
 
     What it starts, threads and processes, does not inherit it. A nice value would not do: Linux weighs it inside a

@@ -81,8 +81,8 @@ def solve(
 
 
 def _solve(trajectory: "Trajectory", rig: "Rig", method: str, texts: list[str], start: Any) -> tuple["Solution", Any]:
-    from server.store.options import method_options, parse_option
     from solver.attitude import dcm_from_quaternion
+    from solver.method_options import method_options, parse_option
     from solver.solve import solve as solve_flight
 
     options = method_options(method, dict(parse_option(text, method) for text in texts))

@@ -9,15 +9,14 @@ import socket
 import subprocess
 import sys
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from server.runtime.live_step import LiveError, LiveSettings
+from server.runtime.live_step import Flight, LiveError, LiveSettings
 from server.runtime.path import attitude_of
 from server.runtime.replanner import MESSAGE
 from solver.errors import SolverError
-from solver.kinematics import payload_attitude
+from solver.method_options import method_options
 from solver.planner import Ahead, PreviewOptions, PreviewStepper, Replan
 from solver.rig import Rig
 
@@ -33,19 +32,19 @@ class PreviewStep:
     def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
         self._rig, self._dt = rig, dt
         try:
-            self._options = msgspec.convert(settings.options, PreviewOptions)
+            self._options: PreviewOptions = method_options(settings.method, settings.options) or PreviewOptions()
             self._restart(rig.home.copy())  # writable, as in flight: to Numba a type of its own
-        except (SolverError, msgspec.ValidationError) as cause:
+        except SolverError as cause:
             raise LiveError(str(cause)) from cause
         self.preview_s = self._options.preview_s
         if self.preview_s > FARTHEST_S:
             raise LiveError(f"option preview_s = {self.preview_s:g}: expected {FARTHEST_S:g} s at most")
         # Compiled here, at rest, and not in the first live tick; in the planner too, by the job.
         self.announce(0.1, _LEVEL)
-        self._step(np.array(_LEVEL))
-        self._planner = Planner(self._stepper.replan())
-        self._stepper.adopt(self._planner.first)
-        self._step(np.array(_LEVEL))
+        self._flight.step(np.array(_LEVEL))
+        self._planner = Planner(self._flight.stepper.replan())
+        self._flight.stepper.adopt(self._planner.first)
+        self._flight.step(np.array(_LEVEL))
 
     def begin(self, pose: Array) -> None:
         """From rest at `pose` (4,) [rad]."""
@@ -53,45 +52,37 @@ class PreviewStep:
         self._restart(pose)
 
     def _restart(self, pose: Array) -> None:
-        self._C = np.empty((1, 3, 3))
-        payload_attitude(self._rig.axes, pose, self._C[0])
-        self._stepper = PreviewStepper(self._rig, self._options, pose, self._C[0].copy())
-        self._stepper.begin_at_rest(self._dt)
-        self._tick = 1
-        self._time = np.zeros(1)
+        self._flight = Flight(self._rig, self._dt, pose, self._stepper)
         self._heard = 0.0  # [s] of this flight, when the planner was last heard
+
+    def _stepper(self, pose: Array, attitude: Array) -> PreviewStepper:
+        return PreviewStepper(self._rig, self._options, pose, attitude)
 
     def follow(self, q: Array) -> tuple[Array, int]:
         """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
-        way = self._planner.answer()
-        if way is not None and self._stepper.adopt(way):
-            self._heard = self._tick * self._dt
-        found = self._step(q)
-        if self._stepper.due and not self._planner.busy:
-            self._planner.ask(self._stepper.replan())
+        flight, planner = self._flight, self._planner
+        way = planner.answer()
+        if way is not None and flight.stepper.adopt(way):
+            self._heard = flight.now
+        found = flight.step(q)
+        if flight.stepper.due and not planner.busy:
+            planner.ask(flight.stepper.replan())
         return found
-
-    def _step(self, q: Array) -> tuple[Array, int]:
-        attitude_of(q, self._C[0])
-        self._time[0] = self._tick * self._dt
-        self._tick += 1
-        block = self._stepper.block(self._time, self._C)
-        return block.angles[0], int(block.limited[0])
 
     def announce(self, ahead_s: float, q: tuple[float, float, float, float]) -> None:
         """The attitude q that is to be flown `ahead_s` [s] after the tick to come."""
         C = np.empty((1, 3, 3))
         attitude_of(np.array(q), C[0])
-        self._stepper.offer(np.array([self._tick * self._dt + ahead_s]), C)
+        self._flight.stepper.offer(np.array([self._flight.now + ahead_s]), C)
 
     def void(self) -> None:
         """What was announced is not to come: the source began anew."""
-        self._stepper.void()
+        self._flight.stepper.void()
 
     @property
     def way_age_s(self) -> float:
         """How long ago the planner was last heard [s]."""
-        return self._tick * self._dt - self._heard
+        return self._flight.now - self._heard
 
     def close(self) -> None:
         """End the planner."""

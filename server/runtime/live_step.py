@@ -1,8 +1,11 @@
 """One step of a live flight: a method of the solver that keeps the limits, or `preview` with its planner."""
 
+from __future__ import annotations
+
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import msgspec
 import numpy as np
@@ -13,8 +16,14 @@ from solver.errors import SolverError
 from solver.kinematics import payload_attitude
 from solver.rig import Rig
 
+if TYPE_CHECKING:
+    from solver.methods.base import LiveStepper  # with it come all methods
+
+    Taken = TypeVar("Taken", bound=LiveStepper)
+else:
+    Taken = TypeVar("Taken")
+
 Array = NDArray[np.float64]
-PREVIEW = "preview"
 
 
 @dataclass(frozen=True)
@@ -69,11 +78,40 @@ class LiveStep(Protocol):
 
 def live_step(rig: Rig, settings: LiveSettings, dt: float) -> LiveStep:
     """The step for one rig and settings, its kernels compiled. Raises `LiveError` where they do not go together."""
+    from solver.solve import PREVIEW
+
     if settings.method != PREVIEW:
         return MethodStep(rig, settings, dt)
     from server.runtime.live_preview import PreviewStep  # with it comes the planner
 
     return PreviewStep(rig, settings, dt)
+
+
+class Flight(Generic[Taken]):
+    """A stepper of the solver that takes a rig over from rest, one attitude a tick."""
+
+    def __init__(self, rig: Rig, dt: float, pose: Array, made: Callable[[Array, Array], Taken]) -> None:
+        """`made` makes the stepper from `pose` (4,) [rad] and its attitude (3, 3)."""
+        self._C = np.empty((1, 3, 3))
+        payload_attitude(rig.axes, pose, self._C[0])
+        self.stepper = made(pose, self._C[0].copy())
+        self.stepper.begin_at_rest(dt)
+        self._dt = dt
+        self._tick = 1
+        self._time = np.zeros(1)
+
+    @property
+    def now(self) -> float:
+        """The time of the tick to come [s]."""
+        return self._tick * self._dt
+
+    def step(self, q: Array) -> tuple[Array, int]:
+        """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
+        attitude_of(q, self._C[0])
+        self._time[0] = self.now
+        self._tick += 1
+        block = self.stepper.block(self._time, self._C)
+        return block.angles[0], int(block.limited[0])
 
 
 class MethodStep:
@@ -84,7 +122,9 @@ class MethodStep:
 
     def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
         # Heavier than the rest of the rig process: only where it is used.
+        from solver.method_options import method_options
         from solver.methods import METHODS
+        from solver.solve import PREVIEW
 
         if settings.method not in METHODS:
             raise LiveError(f"method {settings.method!r}: expected one of {', '.join(METHODS)}, {PREVIEW}")
@@ -94,9 +134,9 @@ class MethodStep:
         self._rig = rig
         self._dt = dt
         try:
-            self._options = msgspec.convert(settings.options, self._method.options)
+            self._options = method_options(settings.method, settings.options) or self._method.options()
             self.begin(rig.home.copy())  # writable, as in flight: to Numba a type of its own
-        except (SolverError, msgspec.ValidationError) as cause:
+        except SolverError as cause:
             raise LiveError(str(cause)) from cause
         # Compiled here, at rest, and not in the first live tick.
         self.follow(np.array([1.0, 0.0, 0.0, 0.0]))
@@ -104,25 +144,19 @@ class MethodStep:
 
     def begin(self, pose: Array) -> None:
         """From rest at `pose` (4,) [rad]."""
-        from solver.methods.base import LiveStepper  # with it come all methods
+        self._flight = Flight(self._rig, self._dt, pose, self._stepper)
 
-        self._C = np.empty((1, 3, 3))
-        payload_attitude(self._rig.axes, pose, self._C[0])
-        stepper = self._method.stepper(self._rig, self._options, pose, self._C[0].copy())
+    def _stepper(self, pose: Array, attitude: Array) -> LiveStepper:
+        from solver.methods.base import LiveStepper
+
+        stepper = self._method.stepper(self._rig, self._options, pose, attitude)
         if not isinstance(stepper, LiveStepper):
             raise LiveError(f"method {self._method.name} cannot take over a rig that stands")
-        stepper.begin_at_rest(self._dt)
-        self._stepper = stepper
-        self._tick = 1
-        self._time = np.zeros(1)
+        return stepper
 
     def follow(self, q: Array) -> tuple[Array, int]:
         """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
-        attitude_of(q, self._C[0])
-        self._time[0] = self._tick * self._dt
-        self._tick += 1
-        block = self._stepper.block(self._time, self._C)
-        return block.angles[0], int(block.limited[0])
+        return self._flight.step(q)
 
     def announce(self, ahead_s: float, q: tuple[float, float, float, float]) -> None:
         """Nothing: a step method looks at the present alone."""

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from server.plan_folder import make_plan, rig_hash, write_plan
 from server.store.errors import StoreError
-from server.store.options import PLAN, method_options
 from server.store.planning_request import PlanRequest
 from server.store.remedy import find_remedy
 from server.store.report import make_report, margins_report, why_infeasible
@@ -19,12 +18,13 @@ from server.store.trajectories import read_arrays
 from solver.attitude import dcm_from_quaternion, quaternion_from_dcm
 from solver.errors import MethodError
 from solver.lead import lead_in, lead_out
+from solver.method_options import method_options
 from solver.planner import Plan, plan
 from solver.planner.verdict import margins
 from solver.resample import Resampled, continuous, resample
 from solver.rig import Rig
 from solver.solution import Solution
-from solver.solve import solve
+from solver.solve import PLAN, solve
 from solver.verify import Violation, verify
 
 Progress = Callable[[str, int, int], None]  # phase, done, total

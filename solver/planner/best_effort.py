@@ -32,10 +32,8 @@ ERROR_WEIGHT = 1e4  # [1/rad^2] beside rates and accelerations squared as shares
 SLACK_COST = 1e5  # of a limit exceeded by its whole: the limits win over the attitude
 LARGEST_PADDING = 4.0  # [s]; beyond it the whole flight starts again from a path inside the limits
 LONGEST = 60.0  # [s] of a stretch whose frames are all set free at once
-FORESIGHTS = (
-    (4.0, 0.2),
-    (8.0, 0.5),
-)  # [s] known and [s] between two ways, of the previews a hopeless flight begins from
+# [s] known and [s] between two ways, of the previews that a hopeless flight begins from
+FORESIGHTS = ((4.0, 0.2), (8.0, 0.5))
 FORESEEN = 600.0  # [s] of a flight that they are tried for: they take a tenth of its length
 EXACT_ERROR = 1e-12  # [rad] above which a sample counts as limited
 APART = 8  # samples of the exact path at least between two stretches
@@ -73,7 +71,7 @@ def least_error(
     stretches = _merged([_Stretch(int(k), int(k) + 1, PADDING) for k in bad], time)
 
     def again() -> BestEffort:  # what cannot be mended place by place
-        return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start), rig, options, start)
+        return afresh(time, attitude, angles, rig, options, start)
 
     freed: dict[tuple[int, int], tuple[Array, NDArray[np.int16], float]] = {}
     while True:
@@ -102,6 +100,13 @@ def least_error(
         x[part], limited[part], _ = freed[part.start, part.stop]
     excess = worst(time, x, limits)[0]
     return BestEffort(x, limited, excess) if excess <= MET else again()
+
+
+def afresh(
+    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None
+) -> BestEffort:
+    """The least error that is found without a path near the limits to begin from; `angles` as `feasible` wants them."""
+    return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start), rig, options, start)
 
 
 def feasible(time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None) -> Array:

@@ -1,9 +1,9 @@
 """What would make a flight fit: flying it slower, turning it by a constant, or raising one limit.
 
 Each remedy is a search over plans and returns the one it ends with, ready to fly: the ways from rest and back to rest
-count, too. The trials skip the least-error path
-of an infeasible flight and, where the samples are dense, look at every few of them; what is returned is planned anew
-from all of them. `progress(done, total)` counts trials and may raise `CancelledError`.
+count, too. The trials skip the least-error path of an infeasible flight and, where the samples are dense, look at every
+few of them; what is returned is planned anew from all of them. `progress(done, total)` counts trials and may raise
+`CancelledError`.
 """
 
 import math

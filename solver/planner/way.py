@@ -27,6 +27,9 @@ Array = NDArray[np.float64]
 START_BEAM = 1000  # states kept a stage then: the way begins anywhere
 HOME_COST = 1e-3  # [1/(rad^2 s)]: decides where nothing else does
 ROOM_FOR = math.radians(60.0)  # [rad/s] body rate that room is measured against
+# What a way may take at most, 150 MB and some seconds: live, the rig waits at rest for the first one.
+MOST = {"beam": 4096, "slides": 64, "smoothing": 100}
+MOST_STAGES = 1000
 FIT_WINDOW = 0.1  # [s] of attitude that the present body rate is taken from
 
 
@@ -79,6 +82,15 @@ class PreviewOptions:
         if self.beam < 1 or self.slides < 2 or self.smoothing < 0:
             found = f"beam = {self.beam}, slides = {self.slides}, smoothing = {self.smoothing}"
             raise MethodError(f"options {found}: expected 1, 2 and 0 or more")
+        for name, most in MOST.items():
+            if getattr(self, name) > most:
+                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected {most} at most")
+        stages = max(self.horizon_s, self.preview_s) / self.stage_s
+        if stages > MOST_STAGES:
+            raise MethodError(
+                f"options horizon_s = {self.horizon_s!r}, preview_s = {self.preview_s!r}, stage_s = {self.stage_s!r}: "
+                f"expected {MOST_STAGES} stages at most, these are {stages:.3g}"
+            )
 
 
 @dataclass(frozen=True)

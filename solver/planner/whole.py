@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solver.planner.best_effort import BestEffort, feasible, from_feasible, least_error
+from solver.planner.best_effort import BestEffort, afresh, least_error
 from solver.planner.curve import polish
 from solver.planner.lead import lead_in, lead_out
 from solver.planner.nodes import OVERLAP
@@ -159,8 +159,7 @@ def _least_error(search: Search) -> BestEffort:
             break
         path = search.refine(chain)
         return least_error(time, attitude, path.angles, rig, options, search.start)
-    begin = feasible(time, attitude, np.empty((0, 4)), rig, search.start)
-    return from_feasible(time, attitude, begin, rig, options, search.start)
+    return afresh(time, attitude, np.empty((0, 4)), rig, options, search.start)
 
 
 STATEMENTS = {

@@ -14,7 +14,7 @@ import pytest
 import yaml
 
 from server.settings import Settings, is_loopback
-from server.store.options import method_names
+from solver.method_options import method_names
 
 ROOT = Path(__file__).parents[2]
 DOCKER = ROOT / "docker"

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from server.settings import Settings
-from server.store.options import method_names
 from server.store.rig_file import read_rig
 from server.store.trajectory import QUATERNION, Convention
+from solver.method_options import method_names
 from solver.methods import METHODS
 from solver.rig import FRAMES, Geometry, builtin_rigs
 

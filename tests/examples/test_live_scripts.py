@@ -1,16 +1,14 @@
 """The live examples, run as a person would, into a running server and its rig process."""
 
-import os
 import re
 import socket
-import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.examples.test_scripts import run
 from tests.server.api.live_server import LiveServer, Operator, live_server
 
 ROOT = Path(__file__).parents[2]
@@ -31,22 +29,8 @@ def server(tmp_path_factory: pytest.TempPathFactory, port: int) -> Iterator[Live
         yield live
 
 
-def run(*arguments: str) -> str:
-    done = subprocess.run(
-        [sys.executable, "-W", "error", *arguments],
-        cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
 def test_jsbsim_is_followed_exactly(server: LiveServer) -> None:
-    said = run("examples/live_jsbsim.py", "--url", server.url, "--seconds", "5")
+    said = run("live_jsbsim.py", "--url", server.url, "--seconds", "5")
     found = re.search(r"(\d+) samples answered, (\d+) followed", said)
     assert found is not None, said
     assert int(found[1]) > 500
@@ -66,7 +50,7 @@ def test_jsbsim_is_followed_exactly(server: LiveServer) -> None:
 def test_the_plain_client_is_answered_and_followed(server: LiveServer, port: int) -> None:
     operator = Operator(server)
     operator.to_idle()
-    assert "status 8" in run("examples/udp_client.py", str(port), "1.5")
+    assert "status 8" in run("udp_client.py", str(port), "1.5")
     for command, args in (("load", {"live": {}}), ("arm", {}), ("go_live", {})):
         assert operator.command(command, **args).is_success
     over = threading.Event()
@@ -78,7 +62,7 @@ def test_the_plain_client_is_answered_and_followed(server: LiveServer, port: int
     renewing = threading.Thread(target=renew)
     renewing.start()
     try:
-        said = run("examples/udp_client.py", str(port), "3.5")
+        said = run("udp_client.py", str(port), "3.5")
     finally:
         over.set()
         renewing.join()

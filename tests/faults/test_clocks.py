@@ -39,9 +39,7 @@ def test_a_clock_that_is_set_in_flight_disturbs_nothing(tmp_path: Path, monkeypa
         config = config_of(tmp_path)
         plan = written(tmp_path / "plan", plan_of(config.rig, 4.0))
         async with hosted(config) as (host, operator):
-            await operator.arm(plan)
-            await operator.must("start")
-            await operator.until("running")
+            await operator.fly(plan)
             for offset in (HOUR_S, -2.0 * HOUR_S):
                 await asyncio.sleep(1.2)
                 draft = clock.with_suffix(".tmp")

@@ -43,9 +43,7 @@ def test_a_disk_that_fills_up_in_flight_costs_the_record_and_not_the_flight(tmp_
         config = dataclasses.replace(config_of(tmp_path, min_free_mb=0.2), runs=runs)
         plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
         async with hosted(config) as (host, operator):
-            await operator.arm(plan)
-            await operator.must("start")
-            await operator.until("running")
+            await operator.fly(plan)
             snapshot = await operator.until("armed", "faulted")
             assert snapshot.state == "armed"
             codes = [a.code for a in snapshot.alarms]
@@ -152,9 +150,7 @@ def test_a_table_that_vanishes_is_a_lost_link_and_can_be_connected_again(tmp_pat
             config = config_of(tmp_path, rig="vertical-4", drive="udp", drive_options=options, guard=WIDE)
             plan = written(tmp_path / "plan", plan_of(config.rig, 8.0, swing=0.5))
             async with hosted(config) as (host, operator):
-                await operator.arm(plan)
-                await operator.must("start")
-                await operator.until("running")
+                await operator.fly(plan)
                 await asyncio.sleep(1.0)
                 os.kill(_child_on(port), 9)
                 snapshot = await operator.until("disconnected", "armed", "faulted")

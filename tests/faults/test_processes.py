@@ -24,8 +24,9 @@ from server.session.machine import SilencePolicy
 from tests.server.runtime.rigs import Operator, config_of, hosted, plan_of, written
 from tests.server.runtime.test_host import within_limits
 
+CAMPAIGN = "FULLPOSE_FAULTS" in os.environ
 MOMENTS = int(os.environ.get("FULLPOSE_FAULTS", "3"))
-SAID_S = 0.2 if "FULLPOSE_FAULTS" in os.environ else 5.0  # by then the server has said what happened
+SAID_S = 0.2 if CAMPAIGN else 5.0  # by then the server has said what happened
 QUICK = SilencePolicy(0.8, 8.0, 60.0)
 
 SERVER = """
@@ -39,9 +40,7 @@ async def main(settings, plan):
     host = RigHost(config.decode(Path(settings).read_bytes()))
     await host.start()
     operator = Operator(host, "the first server")
-    await operator.arm(Path(plan))
-    await operator.must("start")
-    await operator.until("running")
+    await operator.fly(Path(plan))
     print("running", host.snapshot().health.rig_pid, flush=True)
     while True:
         await host.lease("renew", operator.who)
@@ -64,9 +63,7 @@ def test_a_killed_rig_process_is_said_at_once_and_its_record_is_whole(tmp_path: 
         config = config_of(tmp_path)
         plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
         async with hosted(config) as (host, operator):
-            await operator.arm(plan)
-            await operator.must("start")
-            await operator.until("running")
+            await operator.fly(plan)
             await asyncio.sleep(float(np.random.default_rng(seed).uniform(0.1, 4.0)))
             pid = host.snapshot().health.rig_pid
             shared = host._shared
@@ -104,9 +101,7 @@ def test_a_killed_recorder_loses_no_more_than_a_chunk_and_is_replaced_at_rest(tm
         config = config_of(tmp_path)
         plan = written(tmp_path / "plan", plan_of(config.rig, 3.0))
         async with hosted(config) as (host, operator):
-            await operator.arm(plan)
-            await operator.must("start")
-            await operator.until("running")
+            await operator.fly(plan)
             await asyncio.sleep(2.0)
             shared = host._shared
             assert shared is not None
@@ -134,7 +129,7 @@ def test_a_killed_recorder_loses_no_more_than_a_chunk_and_is_replaced_at_rest(tm
     asyncio.run(fly())
 
 
-@pytest.mark.parametrize("seed", range(MOMENTS if "FULLPOSE_FAULTS" in os.environ else 1))
+@pytest.mark.parametrize("seed", range(MOMENTS if CAMPAIGN else 1))
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
 def test_a_dead_or_stopped_server_leaves_the_rig_held_and_the_session_is_adopted(
     tmp_path: Path, how: signal.Signals, seed: int
@@ -218,9 +213,7 @@ def test_a_stopped_rig_process_is_said_and_brakes_when_it_wakes(tmp_path: Path) 
         config = config_of(tmp_path)
         plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
         async with hosted(config) as (host, operator):
-            await operator.arm(plan)
-            await operator.must("start")
-            await operator.until("running")
+            await operator.fly(plan)
             await asyncio.sleep(1.5)
             pid = host.snapshot().health.rig_pid
             revision = host.revision
@@ -247,9 +240,7 @@ def test_a_thousand_queued_commands_do_not_delay_an_estop(tmp_path: Path) -> Non
         config = config_of(tmp_path)
         plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
         async with hosted(config) as (host, operator):
-            await operator.arm(plan)
-            await operator.must("start")
-            await operator.until("running")
+            await operator.fly(plan)
             await asyncio.sleep(1.0)
             shared = host._shared
             assert shared is not None

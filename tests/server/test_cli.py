@@ -14,7 +14,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from server.cli.solve import METHODS
-from server.store.options import method_names
+from solver.method_options import method_names
 
 ROOT = Path(__file__).parents[2]
 FLIGHTS = ROOT / "examples" / "flights"

@@ -223,6 +223,9 @@ def test_options_and_rigs_that_do_not_go() -> None:
     for wrong in ({"preview_s": -1.0}, {"horizon_s": 0.0}, {"reserve": 1.0}, {"recovery": 0.0}, {"beam": 0}):
         with pytest.raises(MethodError, match=next(iter(wrong))):
             PreviewOptions(**wrong)
+    for vast in ({"beam": 10**9}, {"slides": 10**6}, {"smoothing": 10**9}, {"horizon_s": 1e9}, {"stage_s": 1e-9}):
+        with pytest.raises(MethodError, match=f"{next(iter(vast))} = .* at most"):
+            PreviewOptions(**vast)
     time, attitude = flight(0, 0.1, 10.0)
     with pytest.raises(MethodError, match="fourth axis"):
         solve(time, attitude, RIGS["vertical-3"], "preview")
@@ -347,13 +350,19 @@ def test_start_nodes_are_exact_and_inside() -> None:
         assert (np.abs(poses[:, 3]) <= 60 * DEG).all()
 
 
-def test_the_stages_lie_on_the_solutions_and_inside_the_limits() -> None:
-    """As samples of their own they pass the independent check; the way runs next to them."""
+def announced() -> tuple[np.ndarray, np.ndarray, Replan]:
+    """A flight, and the job of a stepper that has flown two of its samples and been told all."""
     time, attitude = flight(2, 3.0, 60.0)
     stepper = PreviewStepper(LIMITED, fast(), None, attitude[0])
     stepper.offer(time, attitude)
     stepper.block(time[:2], attitude[:2])
     job = stepper.replan()
+    return time, attitude, job
+
+
+def test_the_stages_lie_on_the_solutions_and_inside_the_limits() -> None:
+    """As samples of their own they pass the independent check; the way runs next to them."""
+    time, attitude, job = announced()
     stage, pose, known, over = job.stages()
     assert known == over == len(stage) > 50
     at = np.rint(stage * 100).astype(int)
@@ -369,11 +378,7 @@ def test_the_stages_lie_on_the_solutions_and_inside_the_limits() -> None:
 
 
 def test_smoothing_takes_the_jerks_from_the_same_way() -> None:
-    time, attitude = flight(2, 3.0, 60.0)
-    stepper = PreviewStepper(LIMITED, fast(), None, attitude[0])
-    stepper.offer(time, attitude)
-    stepper.block(time[:2], attitude[:2])
-    job = stepper.replan()
+    time, attitude, job = announced()
     rough, smooth = (replace(job, options=fast(smoothing=count)).run() for count in (0, 3))
 
     def jerk(way) -> float:

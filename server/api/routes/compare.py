@@ -13,7 +13,7 @@ from server.api.services import Services, ServicesDep
 from server.api.wire_compare import CompareIn, ComparisonOut
 from server.api.wire_plans import ProgressOut
 from server.store.comparisons import PAGE, UNFINISHED, CompareRequest, Comparison
-from server.store.options import method_options
+from solver.method_options import method_options
 
 router = APIRouter(prefix="/compare", tags=["compare"])
 

@@ -24,12 +24,13 @@ from server.api.wire_plans import (
 )
 from server.plan_folder import read_plan, rig_hash
 from server.store.errors import TransitionError
-from server.store.options import PLAN, PLAN_SOURCE, PREVIEW, PREVIEW_SOURCE, method_options, option_defaults
 from server.store.plans import UNFINISHED
 from server.store.tables import PlanRow
 from server.store.thin import thin
+from solver.method_options import PLAN_SOURCE, PREVIEW_SOURCE, method_options, option_defaults
 from solver.methods import METHODS
 from solver.rig import FRAMES
+from solver.solve import PLAN, PREVIEW
 
 router = APIRouter(tags=["plans"])
 

@@ -24,9 +24,9 @@ from server.api.wire_solve import (
     SolveSamples,
 )
 from server.store.errors import NotFoundError
-from server.store.options import method_options
 from server.store.report import make_report
 from solver.errors import MethodError, SolverError
+from solver.method_options import method_options
 from solver.methods import METHODS
 from solver.methods.base import Stepper
 from solver.rig import Rig

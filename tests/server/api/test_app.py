@@ -16,7 +16,7 @@ from server.api.console import console
 from server.api.origin import OriginGuard
 from server.app import DataDirInUseError, create_app
 from server.settings import Settings, is_loopback
-from server.store.options import method_names
+from solver.method_options import method_names
 from tests.server.api.live_server import LiveServer
 
 

@@ -82,6 +82,19 @@ class Operator:
         await self.must("load", plan_folder=str(plan))
         await self.must("arm")
 
+    async def fly(self, plan: Path) -> None:
+        """From disconnected to running, with `plan`."""
+        await self.arm(plan)
+        await self.must("start")
+        await self.until("running")
+
+    async def arm_live(self, **settings: Any) -> None:
+        """From disconnected to armed with a live source."""
+        await self.take()
+        await self.must("connect")
+        await self.must("load", live=settings)
+        await self.must("arm")
+
     async def until(self, *states: str, seconds: float = 30.0) -> Snapshot:
         """Wait for one of `states`, keeping the lease alive."""
         deadline = asyncio.get_running_loop().time() + seconds

@@ -312,10 +312,7 @@ def test_a_source_that_jumps_is_regained_inside_the_limits_and_no_fault(tmp_path
     async def fly() -> None:
         config = config_of(tmp_path, guard=PATIENT, live=LiveConfig(extrapolate_ms=500.0, delay_ms=20.0))
         async with hosted(config) as (host, operator):
-            await operator.take()
-            await operator.must("connect")
-            await operator.must("load", live={})
-            await operator.must("arm")
+            await operator.arm_live()
             with host.live_socket() as source:
                 await operator.must("go_live")
                 begun = time.monotonic()

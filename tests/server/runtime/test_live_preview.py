@@ -32,24 +32,18 @@ def planners(of: int) -> list[int]:
     return found
 
 
-def rig_pid(folder: Path) -> int:
-    """The rig process's id: the parent of the only planner there is."""
-    for each in Path("/proc").iterdir():
-        try:
-            words = (each / "cmdline").read_bytes()
-        except OSError:
-            continue
-        if b"server.runtime.process" in words and os.fsencode(folder) in words:
-            return int(each.name)
-    raise AssertionError(f"no rig process in {folder}")
-
-
 def test_what_is_told_ahead_is_flown_exactly_when_it_is_due(tmp_path: Path) -> None:
     async def fly() -> None:
         async with hosted(config_of(tmp_path, guard=PATIENT, live=LIVE)) as (host, operator):
             await operator.take()
             await operator.must("connect")
-            for options, word in (({"preview_s": 3.0}, "preview_s"), ({"beam": 0}, "beam"), ({"beam": "x"}, "beam")):
+            wrong = (
+                ({"preview_s": 3.0}, "preview_s"),
+                ({"beam": 0}, "beam"),
+                ({"beam": "x"}, "beam"),
+                ({"way": 1}, "way"),
+            )
+            for options, word in wrong:
                 refused = await operator.say("load", live={"method": "preview", "options": options})
                 assert refused.error is not None
                 assert word in refused.error.message
@@ -62,10 +56,10 @@ def test_what_is_told_ahead_is_flown_exactly_when_it_is_due(tmp_path: Path) -> N
                 replies = await follow(host, 5.0, source)
                 snapshot = host.snapshot()
                 assert snapshot.state == "live", snapshot.alarms
-                source_ = snapshot.health.live
-                assert source_ is not None
-                assert source_.way_age_ms is not None
-                assert source_.way_age_ms < 2000.0  # without a word of the planner it were five seconds
+                heard = snapshot.health.live
+                assert heard is not None
+                assert heard.way_age_ms is not None
+                assert heard.way_age_ms < 2000.0  # without a word of the planner it were five seconds
             settled = [r for r in replies if r.status == LiveStatus.FOLLOWED][len(replies) // 2 :]
             assert len(settled) > 500
             assert max(r.error_deg for r in settled) <= 1e-9
@@ -89,7 +83,7 @@ def test_a_planner_that_dies_is_told_and_costs_foresight_alone(tmp_path: Path) -
             await operator.take()
             await operator.must("connect")
             await operator.must("load", live={"method": "preview"})
-            rig = rig_pid(tmp_path)
+            rig = host.snapshot().health.rig_pid
             (planner,) = planners(rig)
             await operator.must("arm")
             with host.live_socket() as source:

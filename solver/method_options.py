@@ -1,12 +1,12 @@
-"""Methods by name with their options, from text or JSON: names and types are those of their dataclasses in `solver`."""
+"""Methods by name with their options, from text or JSON: names and types are those of their dataclasses."""
 
 from dataclasses import asdict, fields
 from typing import Any
 
 from solver.errors import MethodError
 from solver.methods import METHODS
+from solver.solve import PLAN, PREVIEW
 
-PLAN, PREVIEW = "plan", "preview"
 PLAN_SOURCE = "the whole flight at once: dynamic programming on both charts, then a sparse quadratic programme"
 PREVIEW_SOURCE = "the exact step along a way re-planned over a horizon of known or predicted attitude"
 
