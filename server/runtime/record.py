@@ -15,34 +15,45 @@ from server.runtime.telemetry import SAMPLE, Samples
 from server.session.states import STATES
 
 WAITING_BYTES = 8_000_000
-_NUMBER = {"type": ["number", "null"]}
+# One plain type a field, and no null: Foxglove and Lichtblick refuse a channel whose schema has more than they know.
+# What is not a number, or has no value, is left out of its message.
+_NUMBER, _INTEGER, _STRING, _TRUTH = ({"type": kind} for kind in ("number", "integer", "string", "boolean"))
 _INTEGERS = ("seq", "time_ns", "wall_ns", "flags", "revision", "tick")
 
 
 def sample_schema() -> dict[str, Any]:
-    """JSON schema of a telemetry message: `SAMPLE`'s fields, the state by name, null for what is not a number."""
+    """JSON schema of a telemetry message: `SAMPLE`'s fields, the state by name."""
     properties: dict[str, Any] = {}
     for name in SAMPLE.names or ():
-        kind = {"type": "integer"} if name in _INTEGERS else _NUMBER
+        kind = _INTEGER if name in _INTEGERS else _NUMBER
         properties[name] = {"type": "array", "items": _NUMBER} if SAMPLE[name].shape else kind
-    properties["state"] = {"type": "string", "enum": list(STATES)}
+    properties["state"] = _STRING | {"enum": list(STATES)}
     return {"title": "fullpose.Sample", "type": "object", "properties": properties}
 
 
+# Of the events of every kind: commands, transitions, alarms, runs.
 EVENT_SCHEMA = {
     "title": "fullpose.Event",
     "type": "object",
-    "properties": {"kind": {"type": "string"}, "time_ns": {"type": "integer"}, "wall_ns": {"type": "integer"}},
+    "properties": {
+        **dict.fromkeys(
+            ("kind", "who", "command", "before", "after", "refused", "trigger", "run_id", "state"), _STRING
+        ),
+        **dict.fromkeys(("code", "severity", "message", "frame", "unit"), _STRING),
+        **dict.fromkeys(("time_ns", "wall_ns", "epoch", "head", "number", "count", "pid"), _INTEGER),
+        **dict.fromkeys(("value", "limit", "time_s"), _NUMBER),
+        "first": _TRUTH,
+    },
 }
 STATISTICS_SCHEMA = {
     "title": "fullpose.LoopStatistics",
     "type": "object",
     "properties": {
-        "ticks": {"type": "integer"},
-        "deadline_misses": {"type": "integer"},
+        "ticks": _INTEGER,
+        "deadline_misses": _INTEGER,
         "busy_us": _NUMBER,
-        "lateness_us": {"type": "object", "additionalProperties": _NUMBER},
-        "free_bytes": {"type": "integer"},
+        "lateness_us": {"type": "object", "properties": dict.fromkeys(("p50", "p99", "p999", "max"), _NUMBER)},
+        "free_bytes": _INTEGER,
     },
 }
 
@@ -122,14 +133,15 @@ class RunRecord:
         times = columns["time_ns"]
         for time_ns, sequence, values in zip(times, columns["seq"], zip(*columns.values(), strict=True), strict=True):
             at = time_ns + self._shift
-            data = msgspec.json.encode(dict(zip(names, values, strict=True)))
+            data = msgspec.json.encode({name: v for name, v in zip(names, values, strict=True) if _is_told(v)})
             self._writer.add_message(self._samples, at, data, at, sequence & 0xFFFFFFFF)
         self.samples += len(rows)
 
     def add_event(self, event: dict[str, Any]) -> None:
         """Add one event of the loop."""
         at = event["time_ns"] + self._shift
-        self._writer.add_message(self._events, at, msgspec.json.encode(event), at)
+        told = {name: value for name, value in event.items() if value is not None and _is_told(value)}
+        self._writer.add_message(self._events, at, msgspec.json.encode(told), at)
 
     def add_statistics(self, time_ns: int, statistics: dict[str, Any]) -> None:
         """Add the loop's statistics."""
@@ -153,6 +165,13 @@ class RunRecord:
             self.file.push()
         finally:
             self.file.close()
+
+
+def _is_told(value: Any) -> bool:
+    """False for what is not a number; of four numbers, where none is. A lone one among them becomes null."""
+    if isinstance(value, list):
+        return any(item == item for item in value)
+    return bool(value == value)
 
 
 def _text(value: Any) -> str:

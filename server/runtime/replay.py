@@ -119,11 +119,11 @@ def _schema(writer: Writer, topic: str) -> int:
 def _row(raw: dict[str, Any]) -> tuple[Any, ...]:
     values = []
     for name in SAMPLE.names or ():
-        value = raw[name]
+        value = raw.get(name)
         if name == "state":
-            value = _CODES[value]
-        elif value is None:
-            value = np.nan
+            value = _CODES[raw[name]]
+        elif value is None:  # not a number, or four that are none
+            value = (np.nan,) * 4 if SAMPLE[name].shape else np.nan
         elif isinstance(value, list):
             value = [np.nan if item is None else item for item in value]
         values.append(value)
