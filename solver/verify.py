@@ -4,6 +4,7 @@ Rates and accelerations are the samples' differences: v_k = (x_k - x_{k-1}) / (t
 a_k = (v_{k+1} - v_k) / ((t_{k+1} - t_{k-1}) / 2).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from solver.rig import FRAMES, LIMITS, Rig
 
 Array = NDArray[np.float64]
 
-POSITION_TOLERANCE = 1e-9  # [rad]
+POSITION_TOLERANCE = math.radians(1e-9)
 TOLERANCE = 1e-6  # of a rate or acceleration limit
 
 

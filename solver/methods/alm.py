@@ -5,8 +5,15 @@ f = 1/2 (x-d-g)^T W (x-d-g), h = J (x-d) - e and the eight bounds of the box as 
 here everything is multiplied by it, which keeps r apart from the sample rate. The bounds are those of one sample
 (`solver.limits`), so that rate and acceleration limits are obeyed as well as the paper's position limits; the unknown
 is the step s = x - d rather than x, which costs no digits at large angles.
+
+Where the iteration ends at its cap, its last step is the answer, cut off at the box, and its error shows. Only where no
+step inside the box makes the increment, which the closed form tells (`step.quadratic_step`), has the paper's programme
+no solution: there the step is `step.box_least_squares`, which makes the error as small as the limits allow, and the
+sample is marked. Open loop never makes up for what such a sample left behind, so the mark stays until the attitude is
+held again, for most flights to the end.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +27,7 @@ from solver.methods.base import Block, StepMethod
 from solver.rig import Rig
 from solver.solution import EXACT
 from solver.start import start_pose
-from solver.step import box_least_squares, solve_symmetric, squared_damping
+from solver.step import box_least_squares, quadratic_step, solve_symmetric, squared_damping
 from solver.tracking import (
     CLOCK,
     CODE,
@@ -35,6 +42,7 @@ from solver.tracking import (
     ROWS,
     SHIFT,
     STEP,
+    TOLERANCE,
     WISH,
     advance,
     binding_code,
@@ -93,6 +101,8 @@ class AlmOptions:
             if not least <= getattr(self, name) <= most:
                 raise MethodError(f"option {name} = {getattr(self, name)!r}: expected {least:g} to {most:g}")
 
+
+HELD = math.radians(1e-9)  # in open loop, a sample within this of the attitude has nothing to make up for
 
 # Rows of the multipliers' work array (MULTIPLIER_ROWS, 5): lambda, mu of both sides, then 4 x 4 with a column on the
 # right: J^T J and J^T e, K and b
@@ -195,6 +205,18 @@ def reaches(J: Array, s: Array, e: Array, residual: float) -> bool:
     return True
 
 
+@inner
+def possible(J: Array, volume: float, weight: Array, nowhere: Array, e: Array, work: Array, residual: float) -> bool:
+    """Whether a step inside the box makes the increment e (3,) [rad], by the closed form; work[POSE] is filled.
+
+    `nowhere`: zeros (4,), for work[LO] and work[HI] are bounds of the step; residual as in `reaches`.
+    """
+    step = work[POSE]
+    return quadratic_step(
+        J, work[NULL], volume, weight, nowhere, work[WISH], e, work[LO], work[HI], work[TOLERANCE], step
+    ) and reaches(J, step, e, residual)
+
+
 @kernel
 def alm_block(
     horizontal: bool,
@@ -226,6 +248,7 @@ def alm_block(
     e = np.empty(3)
     lo_code = np.empty(4, np.int16)
     hi_code = np.empty(4, np.int16)
+    nowhere = np.zeros(4)
     d = state[0:4]
     for k in range(time.shape[0]):
         C = attitude[k]
@@ -239,10 +262,10 @@ def alm_block(
             prepare(table, state, h, work, lo_code, hi_code)
             wish(table, d, h, gains, work[WISH])
             volume = four_axis_pose(horizontal, d, F, J, work[NULL])
-            on_target = True
             if feedback:
                 on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
             else:
+                on_target = int(state[CODE]) == EXACT or rotation_error(F, target, e) <= HELD
                 rotation_error(C, target, e)
             for i in range(4):
                 work[LO, i] -= d[i]
@@ -250,8 +273,8 @@ def alm_block(
             count = multiplier_step(J, table[WEIGHT], work[WISH], e, work[LO], work[HI], tuning, room, work[STEP])
             iterations[k] = abs(count)
             code = EXACT
-            if count < 0 and not exact:
-                # Not settled: no step inside the box has this increment.
+            # Not settled: at the cap, or because no step inside the box has this increment.
+            if count < 0 and not exact and not possible(J, volume, table[WEIGHT], nowhere, e, work, tuning[3]):
                 for i in range(4):
                     work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
                 binding = box_least_squares(J, e, work[DAMPING], work[WISH], work[LO], work[HI], work[STEP], A)

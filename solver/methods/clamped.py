@@ -6,15 +6,21 @@ taken off the increment. The paper locks at position limits. Here the ranges are
 rates, accelerations and the distance to brake are clamped as well, and the method claims all of the rig's limits.
 
 Each sample iterates to the target attitude. Where a sample's frames left free cannot reach it, the sample is marked
-with the frame that was locked first and the limit that set its bound.
+with the frame that was locked first and the limit that set its bound; on the way back, where nothing is locked, with
+what made it leave.
+
+Three frames left free have a pole of their own, where no least-squares step turns them about the axis that is lost:
+they would stand there, free to move, for the rest of the flight. There they are re-solved in closed form
+(`tracking.settle`), if that pose is inside the ranges. That is ours: the paper's frames are not locked for so long.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
+from solver._jit import inner, kernel
 from solver.kinematics import jacobian, null_vector, payload_attitude, rotation_error
 from solver.limits import WEIGHT, limit_table
 from solver.methods.base import Block, StepMethod, Stepper
@@ -22,12 +28,31 @@ from solver.methods.sequence import require, require_fourth_axis
 from solver.rig import Rig
 from solver.solution import EXACT
 from solver.start import start_pose
-from solver.step import solve_symmetric, squared_damping
-from solver.tracking import CLOCK, CODE, FRESH, HI, LO, PHASE, ROWS, advance, goal, new_state, prepare, stand
+from solver.step import DAMPED_BELOW, solve_symmetric, squared_damping
+from solver.tracking import (
+    CLOCK,
+    CODE,
+    FRESH,
+    GUESS,
+    HI,
+    LO,
+    PHASE,
+    POSE,
+    ROWS,
+    WISH,
+    advance,
+    binding_code,
+    goal,
+    new_state,
+    prepare,
+    settle,
+    stand,
+)
 
 Array = NDArray[np.float64]
 
-HELD = 1e-9  # [rad] a sample within this of the attitude is not limited
+HELD = math.radians(1e-9)  # a sample within this of the attitude is not limited; nor one within the tolerance
+LONGEST = 1.0  # [rad] a frame in one iteration; longer steps are damped, then shortened
 LOCKED_DAMPING = 1e-12  # shares the step between two free frames with parallel axes
 
 
@@ -97,11 +122,22 @@ def free_step(J: Array, weight: Array, free: NDArray[np.bool_], e: Array, dampin
 
 @kernel
 def clamped_step(
-    J: Array, volume: float, weight: Array, e: Array, lo: Array, hi: Array, free: NDArray[np.bool_], A: Array, p: Array
+    J: Array,
+    volume: float,
+    minors: Array,
+    weight: Array,
+    e: Array,
+    lo: Array,
+    hi: Array,
+    free: NDArray[np.bool_],
+    A: Array,
+    p: Array,
 ) -> int:
     """p <- the step in [lo, hi] by locking the frame that leaves by most; returns the first bound locked, or 0.
 
-    A bound is 1 + 2 frame + (1 at the upper one). lo, hi, p (4,) are of the step; free (4,) and A (3, 4) are filled.
+    A bound is 1 + 2 frame + (1 at the upper one). volume: of J, from `null_vector`; minors (4,): of the three frames
+    left without each, or infinite where their step is not to be damped. lo, hi, p (4,) are of the step; free (4,) and
+    A (3, 4) are filled.
     """
     r = np.empty(3)
     first = 0
@@ -130,14 +166,38 @@ def clamped_step(
         p[out] = hi[out] if upper else lo[out]
         free[out] = False
         locked += 1
+        damping = squared_damping(min(volume, minors[out]))
         if first == 0:
             first = 1 + 2 * out + (1 if upper else 0)
         if locked == 4:
             return first
 
 
+@inner
+def longest_of(p: Array) -> float:
+    """The largest magnitude of p (4,)."""
+    longest = 0.0
+    for i in range(4):
+        longest = max(longest, abs(p[i]))
+    return longest
+
+
+@kernel
+def at_pole(J: Array, n: Array, free: NDArray[np.bool_]) -> bool:
+    """Whether three frames are free and next to their own pole. J (3, 4), n (4,) <- its null vector, free (4,)."""
+    volume = null_vector(J, n)
+    locked = -1
+    for i in range(4):
+        if not free[i]:
+            if locked >= 0:
+                return False
+            locked = i
+    return locked >= 0 and volume * abs(n[locked]) < DAMPED_BELOW
+
+
 @kernel
 def clamped_block(
+    horizontal: bool,
     axes: NDArray[np.int64],
     table: Array,
     parameters: Array,
@@ -161,6 +221,7 @@ def clamped_block(
     lo = np.empty(4)
     hi = np.empty(4)
     free = np.empty(4, np.bool_)
+    undamped = np.full(4, np.inf)
     lo_code = np.empty(4, np.int16)
     hi_code = np.empty(4, np.int16)
     for k in range(time.shape[0]):
@@ -175,7 +236,7 @@ def clamped_block(
         else:
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
-            goal(table, axes, state, target, C, h, parameters[2], F, G, e)
+            on_target = goal(table, axes, state, target, C, h, parameters[2], F, G, e)
             bound = 0
             for again in range(int(parameters[1])):
                 payload_attitude(axes, x, F)
@@ -186,18 +247,36 @@ def clamped_block(
                 for i in range(4):
                     lo[i] = work[LO, i] - x[i]
                     hi[i] = work[HI, i] - x[i]
-                now = clamped_step(J, null_vector(J, n), table[WEIGHT], e, lo, hi, free, A, p)
+                volume = null_vector(J, n)
+                now = clamped_step(J, volume, undamped, table[WEIGHT], e, lo, hi, free, A, p)
+                longest = longest_of(p)
+                if longest > LONGEST:
+                    # Next to the pole of the frames left, which without rate limits nothing else keeps short.
+                    for i in range(4):
+                        n[i] = volume * abs(n[i])
+                    now = clamped_step(J, volume, n, table[WEIGHT], e, lo, hi, free, A, p)
+                    longest = longest_of(p)
                 if bound == 0:
                     bound = now
                 for i in range(4):
-                    x[i] = min(max(x[i] + p[i], work[LO, i]), work[HI, i])
+                    x[i] = min(max(x[i] + p[i] * min(1.0, LONGEST / longest), work[LO, i]), work[HI, i])
                 iterations[k] += 1
             payload_attitude(axes, x, F)
-            if rotation_error(C, F, e) > HELD:
-                code = int(state[CODE])
+            held = max(HELD, parameters[0])
+            if rotation_error(G, F, e) > held and at_pole(J, n, free):
+                for i in range(4):
+                    work[GUESS, i] = x[i]
+                    work[WISH, i] = 0.0
+                if settle(horizontal, table[WEIGHT], state[0:4], G, work) > 0:
+                    for i in range(4):
+                        x[i] = work[POSE, i]
+                    bound = 0
+                    payload_attitude(axes, x, F)
+            if rotation_error(C, F, e) > held:
                 if bound > 0:
-                    frame = (bound - 1) // 2
-                    code = int(hi_code[frame] if (bound - 1) % 2 == 1 else lo_code[frame])
+                    code = binding_code(bound, lo_code, hi_code)
+                elif not on_target:
+                    code = int(state[CODE])
         limited[k] = code
         advance(state, target, time[k], x, code, C)
 
@@ -222,6 +301,7 @@ class ClampedStepper:
         m = len(time)
         out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
         clamped_block(
+            self._rig.geometry.horizontal,
             self._rig.axes,
             self._table,
             self._parameters,

@@ -2,17 +2,20 @@
 
 Source: Lin et al. 2022, Navigation and Control 21(2):56-66. Each sample iterates
 dx = W^-1 J^T (J W^-1 J^T + s^2 I)^-1 e until |e| < 1e-3 deg, then solves the other three frames in the base chart,
-on the branch cos d3 > 0. Damping after Chiaverini 1997: s^2 = 0 if sigma_min >= sigma_0, else
-s_max^2 (1 - (sigma_min / sigma_0)^2). Weights, with H = (d3max - d3min)^2 / (4 (d3max - d3) (d3 - d3min)) of Chan
-and Dubey 1995 over (-90, 90) deg:
+on the branch cos d3 > 0. It iterates once at least: a slow flight turns by less than the tolerance a sample, and the
+re-solve would make up for a base that is never asked to move. Damping after Chiaverini 1997: s^2 = 0 if
+sigma_min >= sigma_0, else s_max^2 (1 - (sigma_min / sigma_0)^2). Weights, with
+H = (d3max - d3min)^2 / (4 (d3max - d3) (d3 - d3min)) of Chan and Dubey 1995 over (-90, 90) deg:
 
     w1 = K / (1 + |dH/dd3|)                                      the base is light near the middle frame's pole
     w2 = 1 + A exp(-(sin d2 / B1)^2) exp(-(cos d3 / B2)^2)       the outer frame is heavy next to the rig's singularity
     w3 = 1 + |dH/dd3| while d3 moves toward its limit, else 1    keeps d3 inside
     w4 = 1
 
-each times the rig's own weight. A, B1, B2, K, sigma_0 and s_max are ours: the paper's are not at hand. Its claim on d3
-is a repulsion, not a bound, and the rig's own limits are not looked at: the method claims none.
+each times the rig's own weight. Whatever the options, s^2 is at least `LEAST_DAMPING` of the trace of J W^-1 J^T, so
+that there is an inverse, and no iterate turns a frame by more than `LONGEST`. Both are ours, as are A, B1, B2, K,
+sigma_0 and s_max: the paper's are not at hand. Its claim on d3 is a repulsion, not a bound, and the rig's own limits
+are not looked at: the method claims none.
 """
 
 import math
@@ -35,12 +38,14 @@ from solver.methods.sequence import (
     require_fourth_axis,
 )
 from solver.rig import Rig
-from solver.step import least_norm
+from solver.step import solve_symmetric
 
 Array = NDArray[np.float64]
 
 HALF_TURN = 0.5 * math.pi
-NEAREST = 1e-6  # [rad] the distance to the limit is no smaller in H: on the limit and beyond it
+NEAREST = 1e-3  # [rad] the distance to the limit is no smaller in H: on the limit and beyond it
+LEAST_DAMPING = 1e-12  # of the trace: well above rounding, so that L D L^T finds a positive definite matrix
+LONGEST = 0.2  # [rad] a frame in one iterate; the linearisation says nothing about longer ones
 
 
 @dataclass(frozen=True)
@@ -124,6 +129,35 @@ def dwln_weights(rig_weight: Array, parameters: Array, x: Array, moving: float, 
 
 
 @kernel
+def damped_step(J: Array, w: Array, e: Array, damping: float, A: Array, p: Array) -> None:
+    """p <- W^-1 J^T (J W^-1 J^T + s^2 I)^-1 e, s^2 at least `LEAST_DAMPING` of the trace, shortened to `LONGEST`.
+
+    J (3, 4); w, p (4,); e (3,); damping: s^2; A (3, 4) is room to work in.
+    """
+    y = A[:, 3]
+    for i in range(4):
+        p[i] = 1.0 / w[i]
+    for r in range(3):
+        y[r] = e[r]
+        for c in range(r + 1):
+            total = 0.0
+            for i in range(4):
+                total += J[r, i] * J[c, i] * p[i]
+            A[r, c] = total
+    damping = max(damping, LEAST_DAMPING * (A[0, 0] + A[1, 1] + A[2, 2]))
+    for r in range(3):
+        A[r, r] += damping
+    solve_symmetric(A, y, 3)
+    longest = LONGEST
+    for i in range(4):
+        p[i] *= J[0, i] * y[0] + J[1, i] * y[1] + J[2, i] * y[2]
+        longest = max(longest, abs(p[i]))
+    if longest > LONGEST:
+        for i in range(4):
+            p[i] *= LONGEST / longest
+
+
+@kernel
 def dwln_block(
     horizontal: bool,
     axes: NDArray[np.int64],
@@ -141,7 +175,7 @@ def dwln_block(
     e = np.empty(3)
     p = np.empty(4)
     w = np.empty(4)
-    zero = np.zeros(4)
+    A = np.empty((3, 4))
     sigma_0, s_max = parameters[4], parameters[5]
     for k in range(time.shape[0]):
         C = attitude[k]
@@ -151,9 +185,9 @@ def dwln_block(
         for i in range(4):
             x[i] = state[i]
         moving = state[LAST_STEP + 2]
-        for _ in range(int(parameters[7])):
+        for again in range(int(parameters[7])):
             payload_attitude(axes, x, F)
-            if rotation_error(C, F, e) < parameters[6]:
+            if rotation_error(C, F, e) < parameters[6] and again > 0:
                 break
             jacobian(axes, x, J)
             sigma = smallest_singular_value(J)
@@ -161,7 +195,7 @@ def dwln_block(
             if sigma < sigma_0:
                 damping = s_max * s_max * (1.0 - (sigma / sigma_0) ** 2)
             dwln_weights(weight, parameters, x, moving, w)
-            least_norm(J, w, zero, e, damping, p)
+            damped_step(J, w, e, damping, A, p)
             for i in range(4):
                 x[i] += p[i]
             moving = p[2]

@@ -4,32 +4,35 @@ Source: Zhao Junhu 2017. The rig is driven as a vertical three-axis one (base, o
 is a follow-up axis. Where the outer angle nears +-90 deg, and that base angle would have to turn half round at once,
 the base instead turns 90 deg out of the way, the inner frame turns back, and the middle frame carries the motion over
 the pole. The other three frames are always solved exactly for the base angle there is (base chart), so the attitude
-is held as long as the middle frame stays inside (-90, 90) deg. The follow-up servo is a critically damped second
-order one with the base's rate and acceleration limits, or the options' where the rig has none; the paper's servo is
-not at hand. The base keeps its rate and acceleration; for the other frames nothing is promised: no limits are claimed.
+is held whatever the base does; where a base too slow, or on its stop, lets the middle frame come to +-90 deg, the outer
+and inner ones turn half round at once. The follow-up servo is a critically damped second order one inside
+`solver.limits.limit_box` of the base: its position, rate and acceleration limits, the last two no higher than the
+options'. The paper's servo is not at hand. For the other frames nothing is promised: no limits are claimed.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver._jit import kernel
 from solver.charts import base_chart, nearest
+from solver.limits import ACCELERATION, RATE, approach_rate, limit_box, limit_table
 from solver.methods.base import StepMethod, Stepper
 from solver.methods.sequence import (
     CLOCK,
-    LAST_STEP,
     MEMORY,
     SequenceStepper,
-    exact_start,
     first_sample,
     keep_sample,
+    open_rig,
     require,
     require_fourth_axis,
 )
 from solver.rig import Rig
+from solver.solution import EXACT
+from solver.start import start_pose
 
 Array = NDArray[np.float64]
 
@@ -88,44 +91,60 @@ def follow_up_block(
     angles: Array,
     iterations: NDArray[np.int32],
 ) -> None:
-    """See `sequence.SequenceKernel`; parameters: aside, back, bandwidth, rate, acceleration, base min, base max."""
-    bandwidth, max_rate, max_acceleration = parameters[2], parameters[3], parameters[4]
+    """See `sequence.SequenceKernel`; parameters: aside, back, bandwidth, then a `limit_table`, row by row."""
+    bandwidth = parameters[2]
+    table = parameters[3:].reshape(-1, 4)
     p = np.empty(4)
+    v = np.zeros(4)  # the base's alone is known, and asked for
+    lo = np.empty(4)
+    hi = np.empty(4)
+    lo_code = np.empty(4, np.int16)
+    hi_code = np.empty(4, np.int16)
     for k in range(time.shape[0]):
         C = attitude[k]
         x = angles[k]
         if first_sample(time[k], C, state, x):
             continue
         h = time[k] - state[CLOCK]
+        past = state[PAST] if state[PAST] > 0.0 else h  # the base stood at the start
+        v[0] = state[BASE_RATE]
+        limit_box(table, state[0:4], v, past, h, lo, hi, lo_code, hi_code)
         gap = base_target(horizontal, C, state[0], parameters, state) - state[0]
-        # Critically damped, and never faster than it can brake within the gap.
-        wanted = math.copysign(min(0.5 * bandwidth * abs(gap), math.sqrt(max_acceleration * abs(gap)), max_rate), gap)
-        change = max_acceleration * 0.5 * (h + (state[PAST] if state[PAST] > 0.0 else h))
+        # Critically damped, and never faster than half its deceleration can brake within the gap. A step longer than
+        # the servo's own time takes on the wanted rate at once: more of it would overshoot, and swing ever wider.
+        wanted = min(0.5 * bandwidth * abs(gap), approach_rate(abs(gap), 0.5 * table[ACCELERATION, 0], h))
+        rate = v[0] + min(2.0 * bandwidth * h, 1.0) * (math.copysign(wanted, gap) - v[0])
+        base = min(max(state[0] + rate * h, lo[0]), hi[0])
+        state[BASE_RATE] = (base - state[0]) / h
         state[PAST] = h
-        rate = state[BASE_RATE] + min(max(2.0 * bandwidth * h * (wanted - state[BASE_RATE]), -change), change)
-        state[BASE_RATE] = rate
-        base = min(max(state[0] + rate * h, parameters[5]), parameters[6])
         base_chart(horizontal, C, base, 1.0 if math.cos(state[2]) >= 0.0 else -1.0, p)
         x[0] = base
         for i in range(1, 4):
-            x[i] = nearest(p[i], state[i] + state[LAST_STEP + i])
+            # Nearest to the last angle, not to where its last step would lead: that may be a half turn (see above).
+            x[i] = nearest(p[i], state[i])
         iterations[k] = 1
         keep_sample(time[k], C, x, state)
 
 
+def _start(rig: Rig, attitude: Array, near: Array | None) -> Array:
+    """The exact pose (4,) [rad] nearest to `near` (or home): inside all position limits if there is one, else the base.
+
+    Every base angle has an exact pose.
+    """
+    pose, code = start_pose(rig, attitude, near)
+    if code == EXACT:
+        return pose
+    _, outer, middle, inner = open_rig(rig).frames
+    return start_pose(replace(rig, frames=(rig.frames[0], outer, middle, inner)), attitude, near)[0]
+
+
 def _stepper(rig: Rig, options: FollowUpOptions, start: Array | None, attitude: Array) -> Stepper:
     require_fourth_axis("follow_up", rig)
-    base = rig.frames[0]
-    parameters = [
-        options.aside_within,
-        options.back_beyond,
-        options.bandwidth,
-        min(options.max_rate, base.max_rate),
-        min(options.max_acceleration, base.max_acceleration),
-        base.min,
-        base.max,
-    ]
-    return SequenceStepper(rig, follow_up_block, parameters, exact_start(rig, attitude, start))
+    table = limit_table(rig)
+    table[RATE, 0] = min(table[RATE, 0], options.max_rate)
+    table[ACCELERATION, 0] = min(table[ACCELERATION, 0], options.max_acceleration)
+    parameters = [options.aside_within, options.back_beyond, options.bandwidth, *table.ravel().tolist()]
+    return SequenceStepper(rig, follow_up_block, parameters, _start(rig, attitude, start))
 
 
 METHOD = StepMethod(

@@ -32,7 +32,14 @@ def test_position() -> None:
     assert (violation.frame, violation.limit) == ("inner", "position")
     assert violation.value == pytest.approx(1.1)
     assert violation.time == TIME[-1]
-    assert violation.samples == int(np.sum(x[:, 3] > np.pi / 3 + 1e-9))
+    assert violation.samples == int(np.sum(x[:, 3] > np.pi / 3 + np.deg2rad(1e-9)))
+
+
+@pytest.mark.parametrize(("beyond_deg", "found"), [(2e-9, 1), (0.5e-9, 0)])
+def test_a_position_may_round_by_a_billionth_of_a_degree(beyond_deg: float, found: int) -> None:
+    x = still()
+    x[:, 3] = np.pi / 3 + np.deg2rad(beyond_deg)
+    assert len(verify(TIME, x, RIGS["vertical-limited"]).violations) == found
 
 
 def test_rate_and_acceleration_each_at_their_sample() -> None:

@@ -6,6 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from solver.attitude import dcm_from_quaternion
+from solver.compare import EXACT_WITHIN, failures
 from solver.errors import MethodError
 from solver.kinematics import jacobian, null_vector
 from solver.methods.alm import MULTIPLIER_ROWS, AlmOptions, multiplier_step
@@ -128,6 +129,30 @@ def test_the_cap_is_kept_and_said() -> None:
     options = AlmOptions(max_iterations=3, mode="closed_loop")
     solution = solve(time, C, RIGS["vertical-4"], "alm", options)
     assert solution.iterations.max() == 3
+
+
+@pytest.mark.parametrize("mode", ["open_loop", "closed_loop"])
+def test_a_step_that_the_cap_ended_is_the_iterations_own(mode: str) -> None:
+    """Not the closed form in its place: the error shows where the iteration was cut off."""
+    scenario = SCENARIOS["large_no_limit"]
+    C = dcm_from_quaternion(scenario.quaternion)
+    worst = [
+        solve(scenario.time, C, RIGS["vertical-4"], "alm", AlmOptions(max_iterations=cap, mode=mode)).matrix_error.max()
+        for cap in (3, 8, 30)
+    ]
+    assert worst[0] > 10.0 * worst[1]
+    assert worst[1] > 2.0 * worst[2]
+
+
+def test_open_loop_says_which_limit_left_the_attitude_behind() -> None:
+    scenario = SCENARIOS["over_limit_loop"]
+    C = dcm_from_quaternion(scenario.quaternion)
+    solution = solve(scenario.time, C, RIGS["vertical-limited"], "alm", AlmOptions(mode="open_loop"))
+    first = int(np.flatnonzero(solution.limited)[0])
+    missed = solution.error[first:] > EXACT_WITHIN
+    assert (solution.limited[first:][missed] != EXACT).all()
+    linearised = [failure for failure in failures(solution) if failure.reason == "linearised step"]
+    assert all(failure.samples <= first and failure.max_error < 0.1 * DEG for failure in linearised)
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,10 @@ import pytest
 from solver.attitude import dcm_from_quaternion
 from solver.kinematics import jacobian, null_vector
 from solver.methods.clamped import METHOD, ClampedOptions, clamped_step
-from solver.rig import builtin_rigs
+from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from solver.scenarios import SCENARIOS
 from solver.solution import limited_name
+from solver.solve import solve
 from solver.verify import verify
 
 RIGS = builtin_rigs()
@@ -16,7 +17,7 @@ RIGS = builtin_rigs()
 
 def step(J: np.ndarray, e: np.ndarray, lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
     p, free, room, n = np.empty(4), np.empty(4, bool), np.empty((3, 4)), np.empty(4)
-    first = clamped_step(J, null_vector(J, n), np.ones(4), e, lo, hi, free, room, p)
+    first = clamped_step(J, null_vector(J, n), np.full(4, np.inf), np.ones(4), e, lo, hi, free, room, p)
     return p, free, first
 
 
@@ -68,3 +69,36 @@ def test_the_mark_names_the_limit() -> None:
     before = verify(scenario.time[:first], block.angles[:first], rig, C[:first])
     assert before.max_error < 1e-9
     assert abs(block.angles[first, 3]) == pytest.approx(np.deg2rad(60.0), abs=0.05)
+
+
+def test_a_mark_ends_when_the_attitude_is_back() -> None:
+    """A coarse tolerance leaves an error in every sample, which is no limit's doing."""
+    scenario = SCENARIOS["over_limit"]
+    C = dcm_from_quaternion(scenario.quaternion)
+
+    def limited(tolerance: float) -> np.ndarray:
+        return solve(scenario.time, C, RIGS["vertical-limited"], "clamped", ClampedOptions(tolerance=tolerance)).limited
+
+    fine, coarse = limited(1e-14), limited(1e-6)
+    assert np.count_nonzero(coarse) == pytest.approx(np.count_nonzero(fine), rel=0.05)
+    assert coarse[-1] == 0
+
+
+def test_every_sample_beyond_a_billionth_of_a_degree_is_marked() -> None:
+    scenario = SCENARIOS["level"]
+    solution = solve(scenario.time, dcm_from_quaternion(scenario.quaternion), RIGS["vertical-4"], "clamped")
+    missed = solution.error > np.deg2rad(1e-9)
+    assert missed.any()
+    np.testing.assert_array_equal(solution.limited > 0, missed)
+
+
+@pytest.mark.parametrize("name", ["large_no_limit", "level"])
+def test_the_pole_of_the_frames_left_is_passed(name: str) -> None:
+    """The base is locked; the others are free, and meet their own pole in mid flight."""
+    scenario = SCENARIOS[name]
+    free = FrameLimits()
+    rig = Rig("locked", Geometry.VERTICAL_4, (FrameLimits(0.0, 0.0), free, free, free))
+    solution = solve(scenario.time, dcm_from_quaternion(scenario.quaternion), rig, "clamped")
+    assert solution.limited_samples == 0
+    assert solution.error.max() < np.deg2rad(1e-9)
+    assert np.abs(solution.angles).max() < 10.0
