@@ -15,14 +15,15 @@ from solver._jit import kernel
 from solver.limits import ACCELERATION, MAX, MIN, approach_rate, limit_box, limit_table
 from solver.methods import METHODS
 from solver.planner.basis import WIDTH, Basis, spline_basis
+from solver.planner.marks import limit_marks
 from solver.planner.options import PlanOptions
 from solver.planner.preview_flight import PreviewFlight
-from solver.planner.programme import Answer, Equality, QuadraticProgramme, solve_programme
+from solver.planner.programme import Equality, QuadraticProgramme, solve_programme
 from solver.planner.refine import MET, NEAR, STRIDE, Limits, cost_weights, rig_limits, worst
 from solver.planner.rows import ROW, Flags, displaced, error_bands, limit_rows, over_limits
 from solver.planner.way import PreviewOptions
 from solver.rig import Rig
-from solver.solution import EXACT, limited_code
+from solver.solution import EXACT
 from solver.start import start_pose
 from solver.verify import attitude_errors, payload_attitudes
 
@@ -73,7 +74,7 @@ def least_error(
     def again() -> BestEffort:  # what cannot be mended place by place
         return afresh(time, attitude, angles, rig, options, start)
 
-    freed: dict[tuple[int, int], tuple[Array, NDArray[np.int16], float]] = {}
+    freed: dict[tuple[int, int], tuple[Array, NDArray[np.bool_], float]] = {}
     while True:
         grown: list[_Stretch] = []
         for stretch in stretches:
@@ -94,12 +95,12 @@ def least_error(
         if merged == stretches:
             break
         stretches = merged
-    x, limited = exact, np.full(n, EXACT, np.int16)
+    x, missed = exact, np.zeros(n, np.bool_)
     for stretch in stretches:
         part = slice(*stretch.range(time))
-        x[part], limited[part], _ = freed[part.start, part.stop]
+        x[part], missed[part], _ = freed[part.start, part.stop]
     excess = worst(time, x, limits)[0]
-    return BestEffort(x, limited, excess) if excess <= MET else again()
+    return BestEffort(x, limit_marks(time, attitude, x, rig, missed), excess) if excess <= MET else again()
 
 
 def afresh(
@@ -138,7 +139,6 @@ def from_feasible(
     n = len(time)
     limits = rig_limits(rig)
     x = angles.copy()
-    codes = np.full(n, limited_code(0, 1), np.int16)
     error, _ = attitude_errors(payload_attitudes(rig, x), attitude)
     lost = np.flatnonzero(error > EXACT_ERROR)
     for stretch in _merged([_Stretch(int(k), int(k) + 1, PADDING) for k in lost], time) if n > 1 else []:
@@ -147,9 +147,7 @@ def from_feasible(
         if time[end - 1] - time[begin] > LONGEST:
             continue
         pinned = (begin > 0, end < n)
-        freed, code, over = _free(
-            time[part], attitude[part], x[part], rig, options, pinned, start if begin == 0 else None
-        )
+        freed, _, over = _free(time[part], attitude[part], x[part], rig, options, pinned, start if begin == 0 else None)
         after, _ = attitude_errors(payload_attitudes(rig, freed), attitude[part])
         if over > MET or float(np.mean(after**2)) >= float(np.mean(error[part] ** 2)):
             continue
@@ -159,8 +157,8 @@ def from_feasible(
         if worst(time[beside], x[beside], limits)[0] > MET:
             x[part] = before
         else:
-            error[part], codes[part] = after, code
-    return BestEffort(x, np.where(error > EXACT_ERROR, codes, EXACT).astype(np.int16), worst(time, x, limits)[0])
+            error[part] = after
+    return BestEffort(x, limit_marks(time, attitude, x, rig, error > EXACT_ERROR), worst(time, x, limits)[0])
 
 
 @kernel
@@ -218,8 +216,8 @@ def _merged(stretches: list[_Stretch], time: Array) -> list[_Stretch]:
 def _free(
     time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, pinned: tuple[bool, bool],
     start: Array | None,
-) -> tuple[Array, NDArray[np.int16], float]:  # fmt: skip
-    """(angles (n, 4), limited (n,), overrun) of one stretch with all frames free; its seams count."""
+) -> tuple[Array, NDArray[np.bool_], float]:  # fmt: skip
+    """(angles (n, 4), missed (n,), overrun) of one stretch with all frames free; its seams count."""
     n = len(time)
     x = angles.copy()
     if n < 2:
@@ -231,11 +229,9 @@ def _free(
     over, whose = np.empty((n, 3)), np.empty((n, 3), np.int8)
     ones = np.eye(4)
     trust = TRUST
-    best: tuple[float, Array, Answer, NDArray[np.int64]] | None = None
+    best: tuple[float, Array] | None = None
     for iteration in range(ITERATIONS):
-        problem, tag, _ = _programme(
-            time, attitude, x, rig, limits, options, basis, stride, flags, trust, pinned, start
-        )
+        problem = _programme(time, attitude, x, rig, limits, options, basis, stride, flags, trust, pinned, start)
         answer = solve_programme(problem)
         moved = np.empty_like(x)
         for i in range(4):
@@ -261,7 +257,7 @@ def _free(
         shift = float(np.abs(answer.coefficients).max())
         if best is None or merit < best[0]:
             settled = best is not None and best[0] - merit < 1e-4 * best[0] and outside <= MET
-            best = merit, moved, answer, tag
+            best = merit, moved
             x = moved
             if settled or (shift < 1e-5 and outside <= MET):
                 break
@@ -272,38 +268,27 @@ def _free(
         if iteration >= HOPELESS and worst(time, x, true_limits)[0] > 1.0:
             break
     assert best is not None
-    return best[1], _codes(n, best[2], best[3]), worst(time, best[1], true_limits)[0]
+    return best[1], np.ones(n, np.bool_), worst(time, best[1], true_limits)[0]
 
 
-def _alone(attitude: Array, x: Array, rig: Rig) -> tuple[Array, NDArray[np.int16], float]:
-    """A flight of one sample with no exact pose inside the ranges: the pose in them that comes closest."""
+def _alone(attitude: Array, x: Array, rig: Rig) -> tuple[Array, NDArray[np.bool_], float]:
+    """A flight of one sample with no exact pose inside the ranges: the pose in them that comes closest.
+
+    A three-axis rig's is its Euler angles, each as far as its range goes.
+    """
+    if not rig.geometry.redundant:
+        return np.clip(x, rig.position_min, rig.position_max), np.ones(1, np.bool_), 0.0
     pose, code = start_pose(rig, attitude[0], x[0])
-    return pose[None], np.array([code], np.int16), 0.0
-
-
-def _codes(n: int, answer: Answer, tag: NDArray[np.int64]) -> NDArray[np.int16]:
-    """The limit that holds each sample (n,): of the binding row nearest in time, the dearest where several are."""
-    codes = np.full(n, limited_code(0, 1), np.int16)
-    active = np.flatnonzero(answer.multipliers > 1e-6 * max(1e-12, float(np.max(answer.multipliers, initial=0.0))))
-    if not active.size:
-        return codes
-    order = active[np.lexsort((answer.multipliers[active], tag[active] // 12))]
-    sample = tag[order] // 12
-    last = np.r_[np.flatnonzero(np.diff(sample)), len(sample) - 1]
-    at, code = sample[last], 1 + tag[order[last]] % 12
-    right = np.clip(np.searchsorted(at, np.arange(n)), 0, len(at) - 1)
-    left = np.maximum(right - 1, 0)
-    nearer = np.where(np.abs(at[left] - np.arange(n)) <= np.abs(at[right] - np.arange(n)), left, right)
-    return code[nearer].astype(np.int16)
+    return pose[None], np.array([code != EXACT]), 0.0
 
 
 def _programme(
     time: Array, attitude: Array, x: Array, rig: Rig, limits: Limits, options: PlanOptions, basis: Basis, stride: int,
     flags: Flags, trust: float, pinned: tuple[bool, bool], start: Array | None,
-) -> tuple[QuadraticProgramme, NDArray[np.int64], float]:  # fmt: skip
+) -> QuadraticProgramme:  # fmt: skip
     size = 4 * basis.size
     bands, gradient = np.zeros((size, 4 * ROW)), np.zeros(size)
-    error = error_bands(
+    error_bands(
         rig.axes, time, attitude, x, basis.first, basis.values, stride, ERROR_WEIGHT,
         *cost_weights(rig, options), bands, gradient,
     )  # fmt: skip
@@ -326,7 +311,7 @@ def _programme(
             row[:WIDTH] = basis.values[0]
             equalities.append(Equality(int(basis.first[0]), row, float(start[i] - x[0, i]), i))
     tag = tag[:count]
-    problem = QuadraticProgramme(
+    return QuadraticProgramme(
         bands,
         gradient,
         origin[:count],
@@ -340,4 +325,3 @@ def _programme(
         4,
         SLACK_COST,
     )
-    return problem, tag, error

@@ -22,6 +22,8 @@ from solver.rig import Rig
 Array = NDArray[np.float64]
 REFERENCE_RATE = math.pi  # [rad/s] stands in for the limit, in costs only, where no frame has one
 BACK_BYTES = 128 << 20  # of back-pointers held at once
+# How far an edge is looked for where no rate limit bounds it: times the body's own rotation, and cells on top.
+LOOK, LOOK_CELLS = 10.0, 4.0
 Progress = Callable[[int, int], None]
 
 
@@ -79,6 +81,9 @@ class Programme:
         self.margin_gain = 1.0
         self.avoid: list[Avoid] = []
         self.motion: tuple[Array, Array] | None = None  # pose and rates (4,) at the first stage: what inertia allows
+        self.everywhere = False  # whether a frame that no rate limit bounds is looked for all the way round
+        longest = float(np.diff(time).max(initial=0.0))
+        self._unlimited = longest > 0.0 and bool((rig.max_rate * longest >= math.pi).any())
         self.room_cost = 0.0  # on ranges nearly used up at the last stage, for a flight that goes on after it
 
     def nodes(self, stage: int) -> tuple[Array, Array, NDArray[np.bool_]]:
@@ -114,15 +119,20 @@ class Programme:
             cost += self.room_cost * (used**4).sum(axis=1)
         return position, cost, alive
 
-    def _within_inertia(self, stage: int, position: Array) -> NDArray[np.bool_]:
-        """The nodes (4G,) that the accelerations let the frames reach from the first stage's pose and rates."""
+    def _inertia(self, stage: int, position: Array) -> tuple[Array, Array]:
+        """(gap (m, 4), reach (4,)) [rad]: how far from coasting at the first stage's rates, and how far it may be."""
         assert self.motion is not None
         pose, rate = self.motion
         t = self.time[stage] - self.time[0]
         gap = position - (pose + rate * t)
         gap -= np.where(self.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
         reach = 0.5 * np.minimum(self.rig.max_acceleration, 1e6) * t * t + 1.5 * self.grid.step + self.slack
-        return np.asarray((np.abs(gap) <= reach).all(axis=1))
+        return np.abs(gap), np.asarray(reach)
+
+    def _within_inertia(self, stage: int, position: Array) -> NDArray[np.bool_]:
+        """The nodes (4G,) that the accelerations let the frames reach from the first stage's pose and rates."""
+        gap, reach = self._inertia(stage, position)
+        return np.asarray((gap <= reach).all(axis=1))
 
     def run(self, start: Array | None = None, progress: Progress | None = None) -> Chain:
         """The cheapest chain from the nodes next to `start` (4,) [rad], or from any."""
@@ -176,8 +186,18 @@ class Programme:
         return costs.ravel()
 
     def _reach(self, stage: int) -> Array:
-        dt = self.time[stage] - self.time[stage - 1]
-        return np.asarray(np.minimum(self.rig.max_rate * dt, 1e3) + self.slack)
+        """How far each frame may be after a stage (4,) [rad]; `bounded` says when less than the limits allow."""
+        reach = self.rig.max_rate * (self.time[stage] - self.time[stage - 1])
+        if self.bounded:
+            turned = self.attitude[stage] @ self.attitude[stage - 1].T
+            body = math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(turned)) - 1.0))))
+            reach = np.where(reach >= math.pi, min(LOOK * body + LOOK_CELLS * self.grid.step, math.pi), reach)
+        return np.asarray(np.minimum(reach, 1e3) + self.slack)
+
+    @property
+    def bounded(self) -> bool:
+        """Whether edges are kept short that the limits do not bound: a chain that is missing then may exist."""
+        return self._unlimited and not self.everywhere
 
     def _step(self, stage: int, position: Array, costs: Array, back: NDArray[np.int32]) -> tuple[Array, Array] | None:
         dt = self.time[stage] - self.time[stage - 1]
@@ -204,10 +224,23 @@ class Programme:
         best = over[np.argmin(over.max(axis=1))]
         return int(np.argmax(best)), 0
 
+    def _closed_by_inertia(self, stage: int) -> tuple[int, int] | None:
+        """(frame, 2): whose acceleration keeps it from the nearest node of a stage that has some, but for inertia."""
+        if self.motion is None:
+            return None
+        motion, self.motion = self.motion, None
+        position, _, alive = self.nodes(stage)
+        self.motion = motion
+        if not alive.any():
+            return None
+        gap, reach = self._inertia(stage, position[alive])
+        over = gap / reach
+        return int(np.argmax(over[np.argmin(over.max(axis=1))])), 2
+
     def _closed_by(self, stage: int, position: Array, costs: Array) -> tuple[int, int]:
         ahead, _, alive = self.nodes(stage)
         if not alive.any():
-            return self._closed_by_position(stage)
+            return self._closed_by_inertia(stage) or self._closed_by_position(stage)
         frame, ratio = nearest_crossing(position, costs, ahead, alive, self.grid.wraps, self._reach(stage))
         if ratio <= 1.0:  # only the count of turns kept the edge away: the range, then
             finite = np.isfinite(self.grid.high)

@@ -3,7 +3,7 @@
 Each frame's rate goes from zero to the flight's along a curve with a plateau of acceleration in the middle and the
 flight's acceleration at its end, so that angles, rates and accelerations are continuous. Each frame takes the
 shortest time, but a tenth of a second where there is room for it, for which its sampled lead, the joint with the flight
-included, keeps inside its limits.
+included, keeps inside its limits. A frame without an acceleration limit that has no room for that stops at once.
 """
 
 import math
@@ -47,7 +47,7 @@ def lead_out(time: Array, angles: Array, rig: Rig) -> tuple[Array, str]:
             ways.append(np.empty(0))
             continue
         way, limit = _frame_way(t, x[:, i], float(rate[i]), float(bend[i]), h, rig, i)
-        if not way.size:
+        if limit is not None:
             return none, f"no room to brake to rest: the {FRAMES[i]} frame's {LIMITS[limit]} limit closes the way"
         ways.append(way)
     samples = np.repeat(x[-1:], max(len(way) for way in ways), axis=0)
@@ -57,8 +57,10 @@ def lead_out(time: Array, angles: Array, rig: Rig) -> tuple[Array, str]:
     return samples, ""
 
 
-def _frame_way(t: Array, x: Array, rate: float, bend: float, h: float, rig: Rig, frame: int) -> tuple[Array, int]:
-    """(angles (m,) [rad] of one frame on its way to rest, -) or (empty, the limit that closes the way)."""
+def _frame_way(
+    t: Array, x: Array, rate: float, bend: float, h: float, rig: Rig, frame: int
+) -> tuple[Array, int | None]:
+    """(angles (m,) [rad] of one frame on its way to rest, None) or (empty, the limit that closes the way)."""
     shortest = max(4.0 * h, 1.1 * abs(rate) / min(float(rig.max_acceleration[frame]), 1e6))
     for T in (max(shortest, GENTLE), shortest):  # hurried only where there is no room for better
         closed = 1
@@ -67,11 +69,13 @@ def _frame_way(t: Array, x: Array, rate: float, bend: float, h: float, rig: Rig,
             way = x[-1] + _way(np.arange(1, m + 1) / m, rate, bend, m * h)
             limit = _outside(t, np.r_[x, way, way[-1], way[-1]], m + 2, h, rig, frame)
             if limit is None:
-                return way, closed
+                return way, None
             closed = limit
             if limit == 0:
                 break  # longer is farther
             T = 1.04 * T + h
+    if _outside(t, np.r_[x, x[-1], x[-1]], 2, h, rig, frame) is None:  # at once: it has no acceleration limit
+        return np.empty(0), None
     return np.empty(0), closed
 
 

@@ -21,7 +21,7 @@ class PlanOptions:
     reserve: float = 1e-3  # share of a limit that the refinement leaves unused, for what falls between its rows
     trust: float = 20.0 * DEG  # [rad] the farthest one iteration moves along the self-motion
     iterations: int = 12  # of the refinement, at most
-    alternatives: int = 6  # other chains tried before the accelerations are called the obstacle
+    alternatives: int = 9  # other chains tried before the accelerations are called the obstacle
     window: float = 12.0  # [s] of one refinement problem; longer flights go window by window
     best_effort: bool = True  # an infeasible flight is brought inside the limits, at the least attitude error
     overlap: float = 3.0  # [s] that a window shares with the one before

@@ -10,7 +10,7 @@ from solver._jit import kernel
 from solver.planner.chain import Chain
 from solver.planner.curve import closest_all, hold_locked, smoothed, spline_rows, spline_slopes
 from solver.planner.options import PlanOptions
-from solver.planner.refine import MET, Refined, refine, rig_limits, worst
+from solver.planner.refine import MET, OVERRUN, Refined, refine, rig_limits, worst
 from solver.rig import Rig
 
 Array = NDArray[np.float64]
@@ -125,6 +125,7 @@ def _window(
         time[part], attitude[part], d[part], rig, options, pinned=(begin > 0, end < n),
         start=start and begin == 0, start_rate=start_rate if begin == 0 else None,
         ends=(begin == 0, end == n), judged=None if end == n else following - begin,
+        missed_cost=OVERRUN,
     )  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from solver.rig import Rig
 
 Array = NDArray[np.float64]
 CHUNK = 1 << 17  # samples looked at together
+RATE_MET = 1e-4  # of the lowest rate limit: a start rate missed by less counts as taken up
 MET = 1e-7  # of a limit: over it by less counts as inside
 OVERRUN = 1e3  # merit of a limit exceeded by its whole; costs are about one a second at most
 NEAR = 0.6  # share of a limit from which its rows are in the programme at once
@@ -49,6 +50,11 @@ def rig_limits(rig: Rig, reserve: float = 0.0) -> Limits:
         rig.position_min + clear, rig.position_max - clear,
         rig.max_rate * (1.0 - reserve), rig.max_acceleration * (1.0 - reserve),
     )  # fmt: skip
+
+
+def locked(rig: Rig) -> bool:
+    """Whether a frame does not move, which leaves no freedom."""
+    return bool((rig.position_max - rig.position_min < LOCKED)[list(rig.geometry.frames)].any())
 
 
 @dataclass(frozen=True)
@@ -84,18 +90,20 @@ def refine(
     time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, *,
     pinned: tuple[bool, bool] = (False, False), start: bool = False, start_rate: Array | None = None,
     ends: tuple[bool, bool] = (False, False), judged: int | None = None, iterations: int | None = None,
+    missed_cost: float = 0.0,
 ) -> Refined:  # fmt: skip
     """One window: time (n,), attitude (n, 3, 3), angles (n, 4) exact poses to begin with.
 
     `pinned` ends keep value, slope and bend; `start` keeps the first pose, `start_rate` (4,) [rad/s] the rate of the
     first interval. A rig with a locked frame leaves nothing to refine. `ends` are where a lead from or to rest needs
-    room. Only the first `judged` samples count for the verdict of the window.
+    room. Only the first `judged` samples count for the verdict of the window. `missed_cost`: what `missed_rate` of 1
+    costs in the choice among the iterations; 0: the start rate is aimed at, and other things may matter more.
     """
     n = len(time)
     limits = rig_limits(rig, options.reserve)
     true_limits = rig_limits(rig)
     d = angles.copy()
-    if n < 2 or (rig.position_max - rig.position_min < LOCKED)[list(rig.geometry.frames)].any():
+    if n < 2 or locked(rig):
         return Refined(d, *worst(time, d, true_limits), 0)
     horizontal = rig.geometry.horizontal
     basis = spline_basis(time, options.knot)
@@ -106,7 +114,11 @@ def refine(
     whose = np.empty((n, 3), np.int8)
     trust = options.trust
     best = Refined(d, *worst(time, d, true_limits, judged), 0)
-    best_cost = path_cost(time, d, rig, options, stride) + OVERRUN * max(0.0, best.over)
+
+    def missed(path: Array) -> float:
+        return missed_rate(time, path, rig, start_rate) if start_rate is not None and missed_cost > 0.0 else 0.0
+
+    best_cost = path_cost(time, d, rig, options, stride) + OVERRUN * max(0.0, best.over) + missed_cost * missed(d)
     count = 0
     for count in range(1, (iterations or options.iterations) + 1):
         problem = _programme(
@@ -126,17 +138,30 @@ def refine(
         flags |= (over > 1e-6).astype(np.uint8)
         cost = path_cost(time, moved, rig, options, stride)
         merit = cost + OVERRUN * max(0.0, result.over) + OVERRUN * fallen
+        short = missed(moved)
+        merit += missed_cost * short
         if merit < best_cost:
             better = best_cost - merit > 1e-3 * best_cost
             best, best_cost = result, merit
             d = moved
-            if result.over <= MET and (shift < 1e-3 or not better):
+            if result.over <= MET and short <= RATE_MET and (shift < 1e-3 or not better):
                 break
         else:
             trust *= 0.3
         if shift < 1e-7 or trust < 1e-7:
             break
     return Refined(best.angles, best.over, best.sample, best.frame, best.limit, count)
+
+
+def missed_rate(time: Array, d: Array, rig: Rig, start_rate: Array) -> float:
+    """The first interval's rate along the self-motion less start_rate's, as a share of the lowest rate limit.
+
+    time (n,) [s], d (n, 4) [rad] exact, start_rate (4,) [rad/s].
+    """
+    n = np.empty((1, 4))
+    null_vectors(rig.geometry.horizontal, d[:1], n)
+    gap = float(n[0] @ (start_rate - (d[1] - d[0]) / (time[1] - time[0])))
+    return abs(gap) / float(reference_rates(rig)[list(rig.geometry.frames)].min())
 
 
 def _programme(
@@ -214,7 +239,7 @@ def lead_cuts(time: Array, d: Array, n: Array, basis: Basis, limits: Limits, end
         origin = int(basis.first[first])
         shift = int(basis.first[k]) - origin
         h = time[first + 1] - time[first]
-        for i in np.flatnonzero(np.isfinite(limits.high) & np.isfinite(limits.acceleration)).tolist():
+        for i in np.flatnonzero(np.isfinite(limits.high)).tolist():
             rate_row = np.zeros(ROW)
             fill_row(1, first + 1, i, time, n, basis.first, basis.values, rate_row)
             here = np.zeros(ROW)
@@ -225,7 +250,8 @@ def lead_cuts(time: Array, d: Array, n: Array, basis: Basis, limits: Limits, end
                 room = limits.high[i] - d[k, i] if side > 0 else d[k, i] - limits.low[i]
                 toward = side if at_end else -side
                 tops = limits.rate[i] if np.isfinite(limits.rate[i]) else max(abs(rate), 1.0)
-                for v in np.r_[np.linspace(0.2, 1.0, 5) * tops, abs(rate)]:
+                # Without an acceleration limit the samples' way is all: one row.
+                for v in np.r_[np.linspace(0.2, 1.0, 5) * tops, abs(rate)] if np.isfinite(a) else (0.0,):
                     slope = 2.0 * ROOM * v / a + SHORTEST * h
                     row = side * here + toward * slope * rate_row
                     value = room - slope * toward * rate + ROOM / a * v * v

@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 TRIAL_INTERVAL = 0.005  # [s] between the samples that a trial looks at
 RELATIVE = 0.01  # to which factors are found
+NOTHING = "nothing"  # what is changed of a flight that fits as it is, where limits are raised
 AXES = ("roll", "yaw", "pitch")  # of the body's x, y, z
 
 
@@ -34,7 +35,8 @@ class Remedy:
     """A remedy: what was changed and by how much, and the flight, rig and plan that come of it.
 
     kind: "slow-down" (value: factor on the time), "heading" or "mounting" (value: angle [rad], `what`: the axis),
-    "relax" (value: the new limit, `what`: frame and limit). `plan.ready` says whether it suffices.
+    "relax" (value: the new limit, `what`: frame and limit; `NOTHING`, value 0, where no limit need be raised).
+    `plan.ready` says whether it suffices.
     """
 
     kind: str
@@ -196,13 +198,14 @@ def relax(
 ) -> list[Remedy]:  # fmt: skip
     """Which single limit, raised by how much, would make the flight feasible: the ones that would, least raise first.
 
-    frame, limit: of `FRAMES` and `LIMITS`, to look at one alone; None: all. Rates and accelerations are raised up to
-    `largest` times, ranges widened on both sides up to a turn in all, to within 1 %. The list is empty where no single
-    limit is enough, or nothing need be raised. Raises `CancelledError` from progress, `InputError`
-    for names that are none.
+    frame, limit: of the rig's frames and `LIMITS`, to look at one alone; None: all. Rates and accelerations are raised
+    up to `largest` times, ranges widened on both sides up to a turn in all, to within 1 %. A flight that fits as it is
+    has one remedy, `NOTHING`; the list is empty where no single limit is enough. Raises `CancelledError` from
+    progress, `InputError` for names that are none.
     """
-    if frame is not None and frame not in FRAMES:
-        raise InputError("frame", None, frame, f"one of {', '.join(FRAMES)}")
+    present = [FRAMES[i] for i in rig.geometry.frames]
+    if frame is not None and frame not in present:
+        raise InputError("frame", None, frame, f"one of {', '.join(present)}, the frames of {rig.name}")
     if limit is not None and limit not in LIMITS:
         raise InputError("limit", None, limit, f"one of {', '.join(LIMITS)}")
     t, C = np.asarray(time, float), np.asarray(attitude, float)
@@ -210,7 +213,9 @@ def relax(
     trials = _Trials(len(candidates) * 10 + 1, progress, options or PlanOptions(), start)
     found: list[tuple[float, int, int]] = []
     if trials.feasible(t, C, rig).ready:
-        return []
+        made = trials.final(t, C, rig)
+        if made.ready:  # else the thinned samples did not show what is wrong
+            return [Remedy("relax", NOTHING, 0.0, t, C, rig, made)]
     for number, (i, kind) in enumerate(candidates):
         trials.done = 10 * number
 

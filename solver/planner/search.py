@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.planner.chain import Avoid, Chain, Programme
+from solver.planner.inertial import BREADTHS, attainable_rates, first_poses, inertial_chain
 from solver.planner.nodes import lattice
 from solver.planner.options import PlanOptions
 from solver.planner.path import Path, refine_path, smooth_curve, stage_samples
+from solver.planner.refine import locked, missed_rate
 from solver.planner.three_axis import turns_into_range
 from solver.rig import Rig
 
@@ -18,6 +20,7 @@ Progress = Callable[[int, int], None]
 AVOID_RADIUS = math.radians(30.0)
 AVOID_COST = 5.0  # [1/s], beside rates squared as shares of their limits
 AVOID_TIME = 0.4  # [s] before and after
+WIDE_SECONDS = 600.0  # of a flight that is searched widely: up to a tenth of its length each time
 
 
 class Search:
@@ -28,7 +31,11 @@ class Search:
         options: PlanOptions, progress: Progress | None,
     ) -> None:  # fmt: skip
         self.time, self.attitude, self.rig, self.options, self.progress = time, attitude, rig, options, progress
-        self.start, self.start_rate = start, start_rate
+        self.start = start
+        self.start_rate = start_rate
+        if start is not None and start_rate is not None:  # what the attitude leaves of it
+            interval = float(time[1] - time[0])
+            self.start_rate = attainable_rates(attitude[1], interval, rig, start[None], start_rate)[0]
         self.counted = np.zeros(4, np.bool_)
         self.avoid: list[Avoid] = []
         self.margin_gain = 1.0
@@ -49,6 +56,9 @@ class Search:
                 programme.motion = self.start, self.start_rate
             programme.stretch, programme.excess = stretch, excess
             chain = programme.run(self.start, self._report(0.0, 0.5))
+            if not chain.found and programme.bounded:  # the verdict rests on all that the limits allow
+                programme.everywhere = True
+                chain = programme.run(self.start, self._report(0.0, 0.5))
             if not chain.found:
                 return chain
             angles = chain.angles
@@ -74,6 +84,12 @@ class Search:
             start_rate=self.start_rate, progress=self._report(0.5, 0.5),
         )  # fmt: skip
 
+    def missed(self, path: Path) -> float:
+        """How far a path is from the start rate asked for: `missed_rate`; 0 where none was."""
+        if self.start_rate is None:
+            return 0.0
+        return missed_rate(self.time, path.angles, self.rig, self.start_rate)
+
     def steer_away(self, path: Path) -> None:
         """Make the places where a path failed dear to the chains to come."""
         for failure in path.failures:
@@ -83,23 +99,45 @@ class Search:
             self.avoid.append(Avoid(self.time[part], path.angles[part].copy(), AVOID_RADIUS, AVOID_COST))
 
     def alternative(self, attempt: int, grid: float, slack: float) -> Chain:
-        """Another chain, after some have failed.
+        """Another chain, after some have failed; attempt from 1 on.
 
         First without a price on the singularity: a flight that must pass through it is better off going straight.
-        Then away from the places that failed; then on a grid twice as fine with stages half as far apart; then with
-        four times the price on the singularity; then as the second, ever farther away.
+        Then those that know the accelerations, ever wider. Then away from the places that failed; then on a grid twice
+        as fine with stages half as far apart; then with four times the price on the singularity; then ever farther
+        away from the places that failed.
         """
+        if 2 <= attempt < 2 + len(BREADTHS):
+            return self._inertial(attempt - 2)
         avoid = self.avoid
-        self.margin_gain = 0.0 if attempt == 1 else 4.0 if attempt == 4 else 1.0
-        if attempt in (1, 4):
+        number = attempt if attempt == 1 else attempt - len(BREADTHS)
+        self.margin_gain = 0.0 if number == 1 else 4.0 if number == 4 else 1.0
+        if number in (1, 4):
             self.avoid = []
-        if attempt == 3 and grid > self.options.fine_grid:
+        if number == 3 and grid > self.options.fine_grid:
             self.samples = stage_samples(self.time, 0.5 * self.options.stage)
             self.avoid = []
             grid = 0.5 * grid
         chain = self.chain(grid, slack)
         self.avoid = avoid
         return chain
+
+    def _inertial(self, number: int) -> Chain:
+        """The chain of one of `BREADTHS`; none where there is no freedom, or the flight is too long for a wide one."""
+        none = Chain(np.empty((0, 4)), math.inf, 0)
+        time, attitude = self.time[self.samples], np.ascontiguousarray(self.attitude[self.samples])
+        if len(time) < 2 or locked(self.rig) or (number > 0 and time[-1] - time[0] > WIDE_SECONDS):
+            return none
+        first = first_poses(attitude[0], self.rig) if self.start is None else self.start[None].copy()
+        if not len(first):
+            return none
+        first_rate, past = np.zeros_like(first), 0.0
+        if self.start_rate is not None:
+            past = float(self.time[1] - self.time[0])
+            first_rate = attainable_rates(self.attitude[1], past, self.rig, first, self.start_rate)
+        poses = inertial_chain(
+            time, attitude, self.rig, self.options, BREADTHS[number], first, first_rate, past, self._report(0.0, 0.5)
+        )
+        return Chain(poses, math.nan, len(time))
 
     def _report(self, begin: float, share: float) -> Progress | None:
         if self.progress is None:

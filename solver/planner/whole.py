@@ -2,29 +2,31 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from solver.errors import InputError
 from solver.planner.best_effort import BestEffort, afresh, least_error
 from solver.planner.curve import polish
 from solver.planner.lead import lead_in, lead_out
 from solver.planner.nodes import OVERLAP
 from solver.planner.options import PlanOptions
 from solver.planner.path import Path, overrun
-from solver.planner.refine import MET
+from solver.planner.refine import MET, RATE_MET
 from solver.planner.search import Search
 from solver.planner.three_axis import three_axis_path
 from solver.planner.verdict import Margins, Verdict, check, margins
 from solver.rig import FRAMES, LIMITS, Rig
-from solver.solution import EXACT, Blocking, Solution
+from solver.solution import EXACT, Blocking, Solution, limited_code
 from solver.start import start_pose
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a chain
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
+STILL = 1e-14  # range of an entry of C up to which an attitude counts as constant: what rounding leaves
 EXCESS = 100.0  # cost of going over a rate limit by its whole, for a flight without a chain
 
 
@@ -63,25 +65,45 @@ def plan(
     """Plan a flight: time (n,) [s], attitude (n, 3, 3) body from reference.
 
     start (4,) [rad]: the flight starts at the exact pose nearest to it; None: wherever is best. start_rate (4,)
-    [rad/s]: the frames' rates over the first interval, as far as the attitude leaves them free; None: free.
-    progress(done, total) is called as the work goes and may raise `CancelledError`; clock reads seconds.
+    [rad/s]: the frames' rates over the first interval; what the attitude leaves free of them, the component along the
+    self-motion, is kept to 1e-4 of the lowest rate limit, or the flight is not feasible. None: free. A three-axis rig
+    has nothing free, nor has a flight of one sample. progress(done, total) is called as the work goes and may raise
+    `CancelledError`; clock reads seconds.
 
-    Raises `InputError` for arrays that are no flight or a start outside the rig's range.
+    Raises `InputError` for arrays that are no flight, a start outside the rig's range or a start rate above its limits.
     """
     from solver.solve import check_flight, check_start  # solve() itself offers this method
 
     options = options or PlanOptions()
     t, C = check_flight(time, attitude)
     near = check_start(start, rig)
-    rate = None if start_rate is None else np.ascontiguousarray(start_rate, dtype=np.float64)
+    rate = check_start_rate(start_rate, rig)
     begin = clock() if clock else math.nan
     if not rig.geometry.redundant:
         return _finished(t, C, rig, _three_axis(t, C, rig, near, options), 0, begin, clock)
     at = None
     if near is not None:
         at, _ = start_pose(rig, C[0], near)
+    if np.ptp(C, axis=0).max() <= STILL and (rate is None or not rate.any()):  # it stands, and one sample says where
+        search = Search(t[:1], C[:1], rig, at, None, options, progress)
+        return _finished(t, C, rig, _fly(search).held(len(t)), search.chains, begin, clock)
     search = Search(t, C, rig, at, rate if len(t) > 1 else None, options, progress)
     return _finished(t, C, rig, _fly(search), search.chains, begin, clock)
+
+
+def check_start_rate(rate: ArrayLike | None, rig: Rig) -> Array | None:
+    """The start rate (4,) [rad/s], or None. Raises `InputError` where it is not a rate of the rig."""
+    if rate is None:
+        return None
+    v = np.ascontiguousarray(rate, dtype=np.float64)
+    if v.shape != (4,) or not np.isfinite(v).all():
+        raise InputError("start_rate", None, v.tolist(), "four finite rates in rad/s, base first")
+    for i in rig.geometry.frames:
+        if abs(v[i]) > rig.max_rate[i]:
+            raise InputError(
+                f"start_rate of the {FRAMES[i]} frame", None, float(v[i]), f"at most {rig.max_rate[i]:.6g} rad/s"
+            )
+    return v
 
 
 @dataclass(frozen=True)
@@ -94,6 +116,11 @@ class _Flown:
     decided_by: str
     blocking: Blocking | None
     grid: float
+
+    def held(self, n: int) -> "_Flown":
+        """Its first sample, held over n."""
+        angles, iterations = np.repeat(self.angles[:1], n, axis=0), np.repeat(self.iterations[:1], n)
+        return replace(self, angles=angles, iterations=iterations, limited=np.repeat(self.limited[:1], n))
 
 
 def _fly(search: Search) -> _Flown:
@@ -113,14 +140,17 @@ def _fly(search: Search) -> _Flown:
                 chain, slack = wide, grid / OVERLAP
         else:
             chain = wide
-    if not chain.found and not options.best_effort:
+    if not chain.found:
         blocking = Blocking(float(time[search.samples[chain.reached]]), FRAMES[chain.frame], LIMITS[chain.limit])
+        decided_by = blocking.limit if blocking.limit != "acceleration" else "start_rate"  # only its inertia closes so
+    if not chain.found and not options.best_effort:
         angles = np.repeat(rig.home[None], n, axis=0)
-        return _Flown(angles, np.zeros(n, np.int32), np.ones(n, np.int16), LIMITS[chain.limit], blocking, grid)
+        limited = np.full(n, limited_code(chain.frame, chain.limit), np.int16)
+        return _Flown(angles, np.zeros(n, np.int32), limited, LIMITS[chain.limit], blocking, grid)
     if not chain.found:
         blocking = Blocking(float(time[search.samples[chain.reached]]), FRAMES[chain.frame], LIMITS[chain.limit])
         effort = _least_error(search)
-        return _Flown(effort.angles, np.zeros(n, np.int32), effort.limited, LIMITS[chain.limit], blocking, grid)
+        return _Flown(effort.angles, np.zeros(n, np.int32), effort.limited, decided_by, blocking, grid)
     best: tuple[float, Path] | None = None
     for attempt in range(options.alternatives + 1):
         if attempt > 0:
@@ -129,22 +159,27 @@ def _fly(search: Search) -> _Flown:
                 continue
             chain = following
         path = search.refine(chain)
-        over = overrun(time, path.angles, rig)
-        if best is None or over[0] < best[0]:
-            best = over[0], path
-        if over[0] <= MET:
+        over = max(overrun(time, path.angles, rig)[0], search.missed(path) - RATE_MET)
+        if best is None or over < best[0]:
+            best = over, path
+        if over <= MET:
             return _Flown(path.angles, path.iterations, none, "checked", None, grid)
         search.steer_away(path)
     assert best is not None
     path = best[1]
-    _, sample, frame, limit = overrun(time, path.angles, rig)
+    over, sample, frame, limit = overrun(time, path.angles, rig)
     blocking = Blocking(float(time[sample]), FRAMES[frame], LIMITS[limit])
+    decided_by = "acceleration"
+    if over <= MET:  # inside every limit, but for the start rate
+        assert search.start_rate is not None
+        off = np.abs(search.start_rate - (path.angles[1] - path.angles[0]) / (time[1] - time[0]))
+        blocking, decided_by = Blocking(float(time[1]), FRAMES[int(np.argmax(off))], "rate"), "start_rate"
     if not options.best_effort:
-        return _Flown(path.angles, path.iterations, none, "acceleration", blocking, grid)
+        return _Flown(path.angles, path.iterations, none, decided_by, blocking, grid)
     effort = least_error(time, search.attitude, path.angles, rig, options, search.start)
-    if not effort.limited.any():  # not even that gave the attitude up
+    if not effort.limited.any() and search.start_rate is None:  # not even that gave the attitude up
         return _Flown(effort.angles, path.iterations, effort.limited, "checked", None, grid)
-    return _Flown(effort.angles, path.iterations, effort.limited, "acceleration", blocking, grid)
+    return _Flown(effort.angles, path.iterations, effort.limited, decided_by, blocking, grid)
 
 
 def _least_error(search: Search) -> BestEffort:
@@ -163,14 +198,17 @@ def _least_error(search: Search) -> BestEffort:
 
 
 STATEMENTS = {
-    "checked": "Feasible: every sample, and half-way between samples, checked by code apart from the planner.",
+    "checked": "Feasible: every sample checked by code apart from the planner.",
     "position": "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
     "no chain of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
     "Grid-complete away from the singularity, not a theorem.",
     "rate": "Infeasible: no chain of nodes obeys the rate limits past the blocking time, even with every edge widened "
     "by the grid's covering step. Grid-complete away from the singularity, not a theorem.",
     "acceleration": "Infeasible as far as the search went: chains inside the rate limits exist, but none of those "
-    "refined came inside every limit; the blocking place is the worst of the best one. Evidence, not a proof.",
+    "refined came inside every limit, with or without regard to the accelerations; "
+    "the blocking place is the worst of the best one. Evidence, not a proof.",
+    "start_rate": "Infeasible with the start rate asked for: no path was found that takes it up inside the limits; the "
+    "blocking frame is the one it fails by. Evidence, not a proof.",
     "three-axis": "Infeasible: a three-axis rig has no freedom but the choice of the Euler set and its turns.",
 }
 
@@ -193,7 +231,11 @@ def _finished(
         first = found.violations[0]
         blocking = Blocking(first.time, first.frame, first.limit)
         decided_by = "acceleration" if rig.geometry.redundant else "three-axis"
-    verdict = Verdict(blocking is None, blocking, decided_by, flown.grid, STATEMENTS[decided_by], found.between)
+    between = found.between
+    statement = f"{STATEMENTS[decided_by]} {between.sentence()}" if blocking is None else STATEMENTS[decided_by]
+    verdict = Verdict(
+        blocking is None, blocking, decided_by, flown.grid, statement, between.matrix, between.angle
+    )  # fmt: skip
     inn, in_note = lead_in(time[:3], angles[:3], rig)
     out, out_note = lead_out(time[-3:], angles[-3:], rig)
     elapsed = (clock() - begin) if clock else math.nan

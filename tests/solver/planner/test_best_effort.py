@@ -9,8 +9,8 @@ from solver.planner import PlanOptions, plan
 from solver.planner.best_effort import feasible, follow, from_feasible, least_error
 from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from solver.scenarios import random_flight
-from solver.solution import EXACT
-from solver.verify import verify
+from solver.solution import EXACT, limited_code
+from solver.verify import payload_attitudes, verify
 
 DEG = np.pi / 180.0
 RIGS = builtin_rigs()
@@ -102,6 +102,17 @@ def test_one_sample_out_of_reach():
     assert made.verdict.blocking.limit == "position"
     assert made.solution.limited[0] != EXACT
     assert verify([0.0], made.solution.angles, rig).violations == ()
+
+
+@pytest.mark.parametrize("geometry", [Geometry.VERTICAL_3, Geometry.HORIZONTAL_3])
+def test_one_sample_out_of_reach_of_a_three_axis_rig(geometry):
+    narrow = FrameLimits(-20 * DEG, 20 * DEG)
+    rig = Rig("narrow", geometry, (narrow, narrow, narrow, narrow))
+    turned = Rig("free", geometry)
+    wanted = np.array([[0.0, 50 * DEG, 10 * DEG, 5 * DEG]])
+    made = plan([0.0], payload_attitudes(turned, wanted), rig)
+    assert made.solution.angles[0] == pytest.approx([0.0, 20 * DEG, 10 * DEG, 5 * DEG], abs=1e-12)
+    assert made.solution.limited[0] == limited_code(1, 0)
 
 
 def test_following_keeps_the_limits_of_a_jumping_target():

@@ -9,6 +9,7 @@ from solver.attitude import dcm_from_euler, dcm_from_quaternion
 from solver.planner.chain import Programme, reference_rates
 from solver.planner.nodes import lattice
 from solver.planner.options import PlanOptions
+from solver.planner.search import Search
 from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from solver.scenarios import random_flight
 from solver.verify import payload_attitudes
@@ -112,3 +113,39 @@ def test_turns_of_a_bounded_frame_are_counted():
         if fits:
             assert chain.angles[:, 0].min() >= 0.0
             assert chain.angles[:, 0].max() <= 450 * DEG + 1e-12
+
+
+def test_without_rate_limits_the_chain_is_looked_for_nearby_and_then_everywhere():
+    rig = Rig("free", Geometry.VERTICAL_4, (FrameLimits(),) * 4)
+    p = programme(rig, stages=40, grid=4.0, interval=0.05)
+    assert p.bounded
+    assert (p._reach(1) < 1.5).all()
+    near = p.run()
+    p.everywhere = True
+    assert not p.bounded
+    assert (p._reach(1) > np.pi).all()
+    assert near.cost == pytest.approx(p.run().cost)  # the cheapest chain has no long edges
+    assert not programme(LIMITED).bounded
+
+
+def test_a_chain_that_is_missing_nearby_is_looked_for_everywhere(monkeypatch):
+    monkeypatch.setattr("solver.planner.chain.LOOK", 0.0)
+    monkeypatch.setattr("solver.planner.chain.LOOK_CELLS", 0.0)
+    p = programme(Rig("free", Geometry.VERTICAL_4, (FrameLimits(),) * 4), interval=0.05)
+    assert not p.run().found
+    search = Search(p.time, p.attitude, p.rig, None, None, PlanOptions(), None)
+    assert search.chain(p.grid.step).found
+
+
+def test_inertia_that_closes_the_way_is_named_as_an_acceleration():
+    p = programme(replace_acceleration(LIMITED, 1.0 * DEG), stages=20, grid=2.0, interval=0.05)
+    pose = programme(LIMITED, stages=20, grid=2.0, interval=0.05).run().angles[0]
+    p.motion = pose, np.array([3.0, -3.0, 3.0, 3.0])
+    chain = p.run(pose)
+    assert not chain.found
+    assert chain.limit == 2
+
+
+def replace_acceleration(rig, value):
+    frames = tuple(replace(frame, max_acceleration=value) for frame in rig.frames)
+    return replace(rig, frames=frames)

@@ -11,6 +11,7 @@ from solver.attitude import dcm_from_euler, dcm_from_quaternion
 from solver.errors import CancelledError, InputError, MethodError
 from solver.methods.exact import ExactOptions
 from solver.planner import PlanOptions, plan
+from solver.planner.curve import null_vectors
 from solver.planner.verdict import check, margins
 from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from solver.scenarios import random_flight
@@ -60,6 +61,56 @@ def test_a_start_in_motion_is_taken_up():
     x = part.solution.angles
     assert np.abs(x[0] - whole[cut]).max() < 1e-9
     assert np.abs((x[1] - x[0]) / (t[1] - t[0]) - rate).max() < 0.02 * rate.max()
+
+
+STILL = np.array([1.0, 0.2, 0.1, 0.1])  # [rad]
+
+
+def slow_flight():
+    t = np.arange(0.0, 4.0, 0.004)
+    return t, dcm_from_euler(0.5 * np.sin(t), 0.3 + 0.2 * np.sin(t), 0.0 * t)
+
+
+def along(angles, t, rate):
+    """(asked, flown) rate along the self-motion over the first interval."""
+    n = np.empty((1, 4))
+    null_vectors(False, angles[:1], n)
+    return n[0] @ rate, n[0] @ (angles[1] - angles[0]) / (t[1] - t[0])
+
+
+@pytest.mark.parametrize("start", [STILL, None])
+@pytest.mark.parametrize("base_rate", [-2.0, 3.0])
+def test_what_the_attitude_leaves_free_of_a_start_rate_is_flown(start, base_rate):
+    t, C = slow_flight()
+    rate = np.array([base_rate, 0.0, 0.0, 0.0])
+    made = plan(t, C, RIGS["vertical-4"], start=start, start_rate=rate)
+    assert made.verdict.feasible
+    asked, flown = along(made.solution.angles, t, rate)
+    assert flown == pytest.approx(asked, abs=2e-3)
+
+
+def test_a_start_rate_that_cannot_be_kept_is_not_feasible():
+    t, C = slow_flight()
+    at = plan(t, C, LIMITED).solution.angles[0]
+    frames = list(LIMITED.frames)
+    frames[0] = replace(frames[0], min=at[0] - 2.0, max=at[0] + 1e-3, home=at[0])
+    rig = Rig("at its stop", Geometry.VERTICAL_4, tuple(frames))
+    made = plan(t, C, rig, start=at, start_rate=[3.0, 0.0, 0.0, 0.0], options=PlanOptions(best_effort=False))
+    assert plan(t, C, rig, start=at).verdict.feasible
+    assert not made.verdict.feasible
+    assert made.verdict.blocking is not None
+    assert made.verdict.decided_by != "position"
+
+
+@pytest.mark.parametrize(
+    ("rate", "named"),
+    [([np.nan] * 4, "four finite"), ([1.0, 2.0, 3.0], "four finite"), ([0.0, 100.0, 0.0, 0.0], "outer")],
+)
+def test_a_start_rate_that_is_none_is_refused(rate, named):
+    t, C = slow_flight()
+    for start in (STILL, None):
+        with pytest.raises(InputError, match=f"start_rate.*{named}"):
+            plan(t, C, RIGS["vertical-4"], start=start, start_rate=rate)
 
 
 def test_a_start_outside_the_range_is_no_start():

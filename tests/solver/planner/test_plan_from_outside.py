@@ -160,7 +160,35 @@ def test_short_and_constant_flights(samples: int) -> None:
     attitude = np.repeat(from_euler(np.array([1.0]), np.array([0.5]), np.array([2.5])), samples, axis=0)
     result = plan(time, attitude, rig)
     assert_flown(result, rig, time, attitude)
-    assert np.ptp(result.solution.angles, axis=0).max() < 1e-7  # the quadratic programme's tolerance
+    assert np.ptp(result.solution.angles, axis=0).max() < 1e-13
+
+
+@pytest.mark.parametrize("geometry", [Geometry.VERTICAL_4, Geometry.HORIZONTAL_4])
+@pytest.mark.parametrize("cut", [180.0, 60.0, 20.0])
+def test_a_constant_attitude_is_stood_not_flown(geometry: Geometry, cut: float) -> None:
+    base = builtin_rigs()[geometry.value].frames
+    rig = limited(geometry, inner=span(base[3], -cut, cut))
+    time = 2e-3 * np.arange(1001)
+    for seed in range(4):
+        pose = Rotation.random(random_state=seed).as_matrix()
+        noise = np.random.default_rng(seed).uniform(-2e-16, 2e-16, (len(time), 3, 3))  # as a converter rounds
+        for attitude in (np.repeat(pose[None], len(time), axis=0), pose + noise):
+            result = plan(time, attitude, rig)
+            assert np.ptp(result.solution.angles, axis=0).max() < 1e-13
+            assert not len(result.lead_in)
+            assert not len(result.lead_out)
+            if result.verdict.feasible:
+                assert_flown(result, rig, time, attitude)
+
+
+def test_a_constant_attitude_is_held_where_the_start_is() -> None:
+    rig = builtin_rigs()["vertical-limited"]
+    time = 2e-3 * np.arange(1001)
+    start = np.array([1.0, 0.3, -0.4, 0.5])  # far from where home would have it
+    attitude = np.repeat(payload(rig, start[None]), len(time), axis=0)
+    result = plan(time, attitude, rig, start=start)
+    assert_flown(result, rig, time, attitude)
+    assert np.abs(result.solution.angles - start).max() < 1e-9
 
 
 def test_uneven_time() -> None:

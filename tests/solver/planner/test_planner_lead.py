@@ -1,12 +1,14 @@
 """Leads: from rest to the flight and back, with the flight between them, inside every limit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from solver.attitude import dcm_from_quaternion
 from solver.planner import plan
 from solver.planner.lead import _way, lead_in, lead_out
-from solver.rig import builtin_rigs
+from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from solver.scenarios import random_flight
 from solver.verify import verify
 
@@ -65,3 +67,45 @@ def test_no_room_is_said_with_frame_and_limit():
     assert samples.shape == (0, 4)
     assert "inner" in note
     assert "position" in note
+
+
+def test_a_frame_without_an_acceleration_limit_stops_at_once_where_there_is_no_room():
+    t = np.arange(3) * 0.002
+    x = np.zeros((3, 4))
+    x[:, 0] = 100 * DEG * t
+    x[:, 3] = 59.99 * DEG + 300 * DEG * (t - t[-1])
+    rig = replace(RIG, frames=(*RIG.frames[:3], replace(RIG.frames[3], max_acceleration=np.inf)))
+    out, note = lead_out(t, x, rig)
+    assert note == ""
+    assert (out[:, 3] == x[-1, 3]).all()
+    assert out[-1, 0] > x[-1, 0]  # the base has a limit, and brakes
+    whole = np.concatenate([x, out, np.repeat(out[-1:], 3, axis=0)])
+    assert verify(np.arange(len(whole)) * 0.002, whole, rig).violations == ()
+    into, note = lead_in(t, x[::-1], rig)
+    assert note == ""
+    assert (into[:, 3] == x[-1, 3]).all()
+
+
+def test_a_stop_at_once_is_no_way_out_of_the_range():
+    t = np.arange(3) * 0.002
+    x = np.zeros((3, 4))
+    x[:, 3] = 61 * DEG + 300 * DEG * (t - t[-1])
+    rig = replace(RIG, frames=(*RIG.frames[:3], replace(RIG.frames[3], max_acceleration=np.inf)))
+    assert "inner" in lead_out(t, x, rig)[1]
+
+
+# The first ends on the stop where nothing keeps room for its leads.
+@pytest.mark.parametrize(
+    ("geometry", "seed"), [(Geometry.VERTICAL_4, 12), (Geometry.VERTICAL_4, 0), (Geometry.HORIZONTAL_4, 2)]
+)
+def test_a_plan_for_a_rig_without_acceleration_limits_can_be_loaded(geometry, seed):
+    free = FrameLimits()
+    rig = Rig("inner only", geometry, (free, free, free, FrameLimits(-60 * DEG, 60 * DEG)))
+    t, q = random_flight(seed, 3.0, 250.0, 60 * DEG)
+    made = plan(t, dcm_from_quaternion(q), rig)
+    assert made.ready, made.lead_note
+    inner = np.concatenate([made.lead_in[:, 3], made.lead_out[:, 3]])
+    assert np.abs(inner).max() <= 60 * DEG
+    # There is room left for more than a sudden stop.
+    assert len(np.unique(made.lead_out[:, 3])) >= 4
+    assert len(np.unique(made.lead_in[:, 3])) >= 4

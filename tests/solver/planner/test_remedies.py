@@ -6,7 +6,7 @@ import pytest
 from solver.attitude import dcm_from_euler
 from solver.errors import CancelledError, InputError
 from solver.planner import plan
-from solver.planner.remedies import offset, raised, relax, slow_down, turned
+from solver.planner.remedies import NOTHING, offset, raised, relax, slow_down, turned
 from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from solver.verify import verify
 
@@ -81,8 +81,16 @@ def test_relax_finds_the_range():
     assert 40 * DEG <= remedies[0].value < 42.5 * DEG
 
 
-def test_relax_has_nothing_to_say_of_a_flight_that_fits():
-    assert relax(TIME, YAW, base_alone(50 * DEG)) == []
+def test_relax_leaves_a_flight_that_fits():
+    rig = base_alone(50 * DEG)
+    (remedy,) = relax(TIME, YAW, rig)
+    assert (remedy.what, remedy.value) == (NOTHING, 0.0)
+    assert remedy.rig is rig
+    assert flies(remedy)
+
+
+def test_relax_is_empty_where_no_single_limit_is_enough():
+    assert relax(TIME, YAW, base_alone(25 * DEG), limit="acceleration") == []
 
 
 def test_heading_offset_brings_the_flight_into_the_range():
@@ -142,3 +150,5 @@ def test_names_that_are_none():
         relax(TIME, YAW, base_alone(1.0), frame="third")
     with pytest.raises(InputError, match="limit"):
         relax(TIME, YAW, base_alone(1.0), limit="jerk")
+    with pytest.raises(InputError, match="outer, middle, inner, the frames of vertical-3"):
+        relax(TIME, YAW, builtin_rigs()["vertical-3"], frame="base")

@@ -1,0 +1,89 @@
+"""Flights that are flyable by construction, at a share of the limits: python -m bench.plan_known [seeds] [seconds]
+
+Frame paths of a few random sines, scaled until every rate and acceleration is at most a share of its limit and every
+range holds them; the flight is where they point the payload. `plan` is told the flight alone and should fly it.
+"""
+
+import sys
+import time as clock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.machine import machine
+from solver.planner import PlanOptions, plan
+from solver.rig import FrameLimits, Geometry, Rig
+from solver.verify import payload_attitudes, verify
+
+Array = NDArray[np.float64]
+DEG = np.pi / 180.0
+# min, max, rate, acceleration [deg, deg/s, deg/s^2] of base, outer, middle, inner
+Frames = tuple[tuple[float, float, float, float], ...]
+INF = np.inf
+RIGS: dict[str, Frames] = {
+    "narrow": ((-300, 300, 200, 250), (-170, 170, 250, 400), (-120, 120, 300, 600), (-60, 60, 600, 2000)),
+    "multi": ((-720, 720, 200, 500), (-400, 400, 200, 500), (-185, 185, 200, 500), (-10, 350, 200, 500)),
+    "free": ((-INF, INF, 200, 500), (-INF, INF, 250, 800), (-INF, INF, 300, 1200), (-INF, INF, 600, 4000)),
+    "tight": ((-40, 40, 60, 100), (-50, 50, 60, 100), (-50, 50, 60, 100), (-45, 45, 60, 100)),
+    "sluggish": ((-INF, INF, 200, 3), (-INF, INF, 250, 800), (-INF, INF, 300, 1200), (-60, 60, 600, 4000)),
+}
+
+
+def rig_of(name: str, geometry: Geometry) -> Rig:
+    """One of `RIGS`."""
+    frames = [FrameLimits(a * DEG, b * DEG, v * DEG, c * DEG) for a, b, v, c in RIGS[name]]
+    return Rig(name, geometry, (frames[0], frames[1], frames[2], frames[3]))
+
+
+def known_path(seed: int, rig: Rig, share: float, duration: float, hz: float) -> tuple[Array, Array]:
+    """(time (n,) [s], angles (n, 4) [rad]) with rates and accelerations at most `share` of their limits."""
+    random = np.random.default_rng(seed)
+    t = np.arange(round(duration * hz) + 1) / hz
+    x = np.zeros((len(t), 4))
+    for i, frame in enumerate(rig.frames):
+        waves = [
+            random.normal() * np.sin(2 * np.pi * random.uniform(0.05, 0.5) * t + random.uniform(0, 6.28))
+            for _ in range(4)
+        ]
+        y = np.sum(waves, axis=0)
+        v = np.gradient(y, t)
+        a = np.gradient(v, t)
+        scale = min(
+            share * min(frame.max_rate, 20.0) / np.abs(v).max(),
+            share * min(frame.max_acceleration, 1e3) / np.abs(a).max(),
+        )
+        if np.isfinite(frame.max):
+            y *= min(scale, (frame.max - frame.min) * 0.98 / np.ptp(y))
+            low, high = frame.min - y.min(), frame.max - y.max()
+            x[:, i] = y + low + (high - low) * random.uniform(0.02, 0.98)
+        else:
+            x[:, i] = y * scale + random.uniform(-np.pi, np.pi)
+    return t, x
+
+
+def main(seeds: int, duration: float) -> None:
+    """Print the counts and the processor time."""
+    print(machine())
+    for name in RIGS:
+        for share in (0.5, 0.7, 0.9):
+            flown, known, longest = 0, 0, 0.0
+            for geometry in (Geometry.VERTICAL_4, Geometry.HORIZONTAL_4):
+                rig = rig_of(name, geometry)
+                for seed in range(seeds):
+                    t, x = known_path(seed, rig, share, duration, 500.0)
+                    if verify(t, x, rig).violations:  # the ends of the sums of sines are not scaled to
+                        continue
+                    known += 1
+                    begin = clock.process_time()
+                    made = plan(t, payload_attitudes(rig, x), rig, options=PlanOptions(best_effort=False))
+                    longest = max(longest, clock.process_time() - begin)
+                    flown += made.verdict.feasible
+            print(
+                f"{name:9s} {share:.1f} of the limits: flown {flown} of {known}, {longest:.1f} s at the longest",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    arguments = sys.argv[1:]
+    main(int(arguments[0]) if arguments else 6, float(arguments[1]) if len(arguments) > 1 else 4.0)
