@@ -1,4 +1,4 @@
-"""Methods side by side on one flight and rig: the figures of each, and why it failed where it did.
+"""Methods, or variants of one, side by side on one flight and rig: the figures of each, and why it failed where it did.
 
 Pure: the solutions come from `solve`, the limits from `verify`, so that no method marks its own work. Radians, seconds.
 """
@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solver.errors import MethodError
+from solver.method_options import method_options, parse_variant
 from solver.methods import METHODS
 from solver.rig import FRAMES, LIMITS, Rig
 from solver.solution import Solution, limited_name
 from solver.solve import PLAN, PREVIEW, check_flight, solve
+from solver.variant import Variant
 from solver.verify import Verification, verify
 
 Array = NDArray[np.float64]
@@ -50,9 +52,9 @@ class Figures:
 
 @dataclass(frozen=True)
 class Row:
-    """One method of a comparison. Where it does not apply to the rig, `refusal` says why and the rest is None."""
+    """One variant of a comparison. Where it does not apply to the rig, `refusal` says why and the rest is None."""
 
-    method: str
+    variant: Variant
     claims_limits: bool
     source: str
     refusal: str | None = None
@@ -110,27 +112,40 @@ def failures(solution: Solution) -> tuple[Failure, ...]:
     return tuple(sorted(found, key=lambda failure: (-failure.samples, failure.reason)))
 
 
+def variants(methods: Sequence[str | Variant]) -> tuple[Variant, ...]:
+    """What is asked for, texts read by `parse_variant`.
+
+    Raises `MethodError` for none, for a text that is none, and where two have one label.
+    """
+    if not methods:
+        raise MethodError("no method to compare: expected at least one name")
+    found = tuple(parse_variant(method) if isinstance(method, str) else method for method in methods)
+    labels = [one.label for one in found]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise MethodError(
+                f"{labels.count(label)} methods are called {label!r}: expected a label of its own for each"
+            )
+    return found
+
+
 def compare(
     time: ArrayLike,
     attitude: ArrayLike,
     rig: Rig,
-    methods: Sequence[str],
+    methods: Sequence[str | Variant],
     start: ArrayLike | None = None,
     clock: Callable[[], float] | None = None,
     progress: Callable[[str, int, int], None] | None = None,
 ) -> tuple[Row, ...]:
     """Solve the flight with each method and measure it: time (n,) [s], attitude (n, 3, 3) body from reference.
 
-    progress(method, done, total) is called as `solve` calls its own. A method that does not apply to the rig gets a
-    row that says so. Raises `InputError` for arrays that are no flight, `MethodError` for an unknown method or none.
+    progress(label, done, total) is called as `solve` calls its own. A method that does not apply to the rig gets a
+    row that says so. Raises `InputError` for arrays that are no flight, `MethodError` as `variants` does.
     """
-    if not methods:
-        raise MethodError("no method to compare: expected at least one name")
-    for method in methods:
-        if method not in METHODS and method not in SOURCES:
-            raise MethodError(f"method {method!r}: expected one of {', '.join((*SOURCES, *METHODS))}")
+    asked = variants(methods)
     t, C = check_flight(time, attitude)
-    return tuple(_row(t, C, rig, method, start, clock, progress) for method in dict.fromkeys(methods))
+    return tuple(_row(t, C, rig, one, start, clock, progress) for one in asked)
 
 
 # Of the methods that are not step methods; both claim the limits.
@@ -144,11 +159,13 @@ def _row(
     time: Array,
     attitude: Array,
     rig: Rig,
-    method: str,
+    variant: Variant,
     start: ArrayLike | None,
     clock: Callable[[], float] | None,
     progress: Callable[[str, int, int], None] | None,
 ) -> Row:
+    method = variant.method
+    options = method_options(method, variant.options)
     if method in SOURCES:
         claims, source = True, SOURCES[method]
     else:
@@ -156,15 +173,16 @@ def _row(
 
     def report(done: int, total: int) -> None:
         if progress:
-            progress(method, done, total)
+            progress(variant.label, done, total)
 
     try:
         if clock and method not in SOURCES:
             # The first call loads the kernels, which is no part of a step.
             chosen = METHODS[method]
-            chosen.stepper(rig, chosen.options(), None, attitude[0]).block(time[:2], attitude[:2])
-        solution = solve(time, attitude, rig, method, start=start, clock=clock, progress=report)
+            own = chosen.options() if options is None else options
+            chosen.stepper(rig, own, None, attitude[0]).block(time[:2], attitude[:2])
+        solution = solve(time, attitude, rig, method, options=options, start=start, clock=clock, progress=report)
     except MethodError as refusal:
-        return Row(method, claims, source, refusal=str(refusal))
+        return Row(variant, claims, source, refusal=str(refusal))
     verification = verify(time, solution.angles, rig, attitude)
-    return Row(method, claims, source, None, solution, verification, figures(solution, verification))
+    return Row(variant, claims, source, None, solution, verification, figures(solution, verification))

@@ -1,11 +1,13 @@
 """Methods by name with their options, from text or JSON: names and types are those of their dataclasses."""
 
+from collections.abc import Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
 from solver.errors import MethodError
 from solver.methods import METHODS
 from solver.solve import PLAN, PREVIEW
+from solver.variant import Variant
 
 PLAN_SOURCE = "the whole flight at once: dynamic programming on both charts, then a sparse quadratic programme"
 PREVIEW_SOURCE = "the exact step along a way re-planned over a horizon of known or predicted attitude"
@@ -16,7 +18,7 @@ def method_names() -> tuple[str, ...]:
     return (PLAN, PREVIEW, *METHODS)
 
 
-def method_options(method: str, values: dict[str, Any]) -> Any:
+def method_options(method: str, values: Mapping[str, Any]) -> Any:
     """The options object of a method; None, its defaults, where nothing is given.
 
     Raises `MethodError` for an unknown method or option, or a value of another type.
@@ -61,6 +63,34 @@ def parse_option(text: str, method: str) -> tuple[str, Any]:
     except (ValueError, KeyError):
         raise MethodError(f"option {name} of {method}: {value!r}: expected {type(default).__name__}") from None
     return name, value
+
+
+def variant(method: str, options: Mapping[str, Any] | None = None, label: str | None = None) -> Variant:
+    """A method with some of its options; without a label it is called by them, as `parse_variant` reads it.
+
+    Raises `MethodError` as `method_options` does.
+    """
+    values = dict(options or {})
+    method_options(method, values)
+    if label is None:
+        given = [f"{name}={_written(values[name])}" for name in option_defaults(method) if name in values]
+        label = ":".join([method, *given])
+    return Variant(method, label, values)
+
+
+def parse_variant(text: str) -> Variant:
+    """The variant of `method` or `method:name=value:name=value`. Raises `MethodError`."""
+    method, *options = text.strip().split(":")
+    if method not in method_names():
+        raise MethodError(f"no method named {method!r}: expected one of {', '.join(method_names())}")
+    return variant(method, dict(parse_option(option, method) for option in options))
+
+
+def _written(value: Any) -> str:
+    """As `parse_option` reads it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value).removesuffix(".0") if isinstance(value, float) else str(value)
 
 
 def _options_type(method: str) -> type[Any]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, RotationSpline
 
 from solver.errors import InputError
+from solver.times import bad_time
 
 Array = NDArray[np.float64]
 
@@ -22,6 +23,7 @@ Array = NDArray[np.float64]
 ON_GRID = 1e-3
 # Between two samples so far apart the turn taken is a guess: the spline takes the short way.
 LARGEST_STEP = 0.5 * math.pi
+MOST_SAMPLES = 30_000_000  # on the grid: eight hours at 1 kHz; a grid longer than that is a time stamp gone wrong
 _WINDOW = 20_000
 _OVERLAP = 50
 
@@ -53,7 +55,8 @@ def resample(time: Array, q: Array, rate_hz: float) -> Resampled:
 
     Samples already on the grid are kept as they are (made unit and continuous in sign); any others, sparser, denser
     or uneven, are read off the spline at time[0] + k / rate_hz, up to the last sample. A flight of one sample is
-    kept, at rate zero. Raises `InputError` for arrays that are not a flight.
+    kept, at rate zero. Raises `InputError` for arrays that are not a flight, or one that is
+    longer than `MOST_SAMPLES` on the grid.
     """
     time = np.array(time, float)
     q = np.array(q, float)
@@ -76,6 +79,13 @@ def resample(time: Array, q: Array, rate_hz: float) -> Resampled:
     if widest > LARGEST_STEP:
         note += f"; neighbouring samples up to {math.degrees(widest):.0f} deg apart, the way between them is a guess"
     return Resampled(grid, q_grid, rate, Choice.SPLINE, note)
+
+
+def check_length(duration_s: float, rate_hz: float) -> None:
+    """Raise `InputError` where a flight of `duration_s` is longer than can be had at `rate_hz`."""
+    longest = MOST_SAMPLES / rate_hz
+    if duration_s > longest:
+        raise InputError("duration_s", None, duration_s, f"at most {longest:.6g} s at {rate_hz:g} Hz")
 
 
 def continuous(q: Array) -> Array:
@@ -115,11 +125,9 @@ def _check(time: Array, q: Array, rate_hz: float) -> None:
         raise InputError("time", None, time.shape, "(n,) with n >= 1")
     if q.shape != (time.size, 4):
         raise InputError("q", None, q.shape, f"({time.size}, 4)")
-    if (bad := int(np.argmin(np.isfinite(time)))) or not np.isfinite(time[0]):
-        raise InputError("time", bad, float(time[bad]), "a finite number")
-    if time.size > 1 and not np.all(steps := np.diff(time) > 0.0):
-        bad = 1 + int(np.argmin(steps))
-        raise InputError("time", bad, float(time[bad]), "a time later than the sample before")
+    if found := bad_time(time):
+        raise InputError("time", found[0], float(time[found[0]]), found[1])
+    check_length(float(time[-1] - time[0]), rate_hz)
     good = np.isfinite(q).all(axis=1) & (np.abs(q).max(axis=1) > 0.0)
     if not good.all():
         bad = int(np.argmin(good))

@@ -12,6 +12,7 @@ from solver.methods import METHODS
 from solver.methods.base import Stepper
 from solver.rig import FRAMES, Rig
 from solver.solution import Blocking, Solution, limited_name
+from solver.times import bad_time
 from solver.verify import attitude_errors, payload_attitudes
 
 Array = NDArray[np.float64]
@@ -122,13 +123,8 @@ def check_flight(time: ArrayLike, attitude: ArrayLike) -> tuple[Array, Array]:
         raise InputError("time", None, t.shape, "(n,) seconds, at least one sample")
     if C.shape != (len(t), 3, 3):
         raise InputError("attitude", None, C.shape, f"({len(t)}, 3, 3), one matrix a sample")
-    bad = np.flatnonzero(~np.isfinite(t))
-    if bad.size:
-        raise InputError("time", int(bad[0]), float(t[bad[0]]), "a finite number of seconds")
-    bad = np.flatnonzero(np.diff(t) <= 0.0)
-    if bad.size:
-        k = int(bad[0]) + 1
-        raise InputError("time", k, float(t[k]), f"later than the sample before it, {float(t[k - 1])!r}")
+    if found := bad_time(t):
+        raise InputError("time", found[0], float(t[found[0]]), found[1])
     bad = np.flatnonzero(~np.isfinite(C).all(axis=(1, 2)))
     if bad.size:
         raise InputError("attitude", int(bad[0]), C[bad[0]].tolist(), "finite numbers")

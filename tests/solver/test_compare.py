@@ -8,6 +8,7 @@ import pytest
 from solver.attitude import dcm_from_quaternion
 from solver.compare import EXACT_WITHIN, compare, failures, figures
 from solver.errors import CancelledError, InputError, MethodError
+from solver.method_options import variant
 from solver.rig import FRAMES, builtin_rigs
 from solver.scenarios import SCENARIOS
 from solver.solution import Solution, limited_code
@@ -86,11 +87,11 @@ def test_methods_side_by_side() -> None:
         time,
         C,
         RIGS["vertical-limited"],
-        ["exact", "lagrange", "three_axis", "exact"],
+        ["exact", "lagrange", "three_axis"],
         clock=lambda: next(clock),
         progress=lambda method, *_: seen.append(method),
     )
-    assert [row.method for row in rows] == ["exact", "lagrange", "three_axis"]
+    assert [row.variant.method for row in rows] == ["exact", "lagrange", "three_axis"]
     assert list(dict.fromkeys(seen)) == ["exact", "lagrange", "three_axis"]
     exact, lagrange, three_axis = (row.figures for row in rows)
     assert exact is not None
@@ -109,6 +110,36 @@ def test_a_method_that_does_not_apply_says_so() -> None:
     assert rows[0].figures is None
     assert "fourth axis" in str(rows[0].refusal)
     assert rows[1].figures is not None
+
+
+def test_variants_of_one_method_side_by_side() -> None:
+    scenario = SCENARIOS["small_angles"]
+    time, C = scenario.time[:200], dcm_from_quaternion(scenario.quaternion[:200])
+    seen: list[str] = []
+    asked = ["alm:mode=open_loop", "alm", variant("alm", {"mode": "open_loop", "growth": 4.0}, "steep")]
+    rows = compare(time, C, RIGS["vertical-4"], asked, progress=lambda label, *_: seen.append(label))
+    labels = ["alm:mode=open_loop", "alm", "steep"]
+    assert [row.variant.label for row in rows] == list(dict.fromkeys(seen)) == labels
+    assert [row.variant.method for row in rows] == ["alm"] * 3
+    open_loop, exact, steep = (row.figures for row in rows)
+    assert open_loop is not None
+    assert exact is not None
+    assert steep is not None
+    assert exact.exact_share == 1.0
+    assert open_loop.exact_share < 0.5
+    assert steep.exact_share < 0.5
+
+
+def test_each_row_has_a_label_of_its_own() -> None:
+    scenario = SCENARIOS["two_samples"]
+    C = dcm_from_quaternion(scenario.quaternion)
+    for asked in (
+        ["exact", "exact"],
+        ["alm:growth=4", variant("alm", {"growth": 4.0})],
+        ["exact", variant("alm", {}, "exact")],
+    ):
+        with pytest.raises(MethodError, match="label of its own"):
+            compare(scenario.time, C, RIGS["vertical-4"], asked)
 
 
 def test_refuses() -> None:

@@ -122,3 +122,12 @@ def test_refuses_what_is_not_a_flight(
     with pytest.raises(InputError) as caught:
         resample(time, q, rate)
     assert caught.value.sample == sample
+
+
+@pytest.mark.parametrize(
+    ("time", "name"), [([0.0, 1e-300], "time"), ([-1e308, 1.5e308], "time"), ([0, 1e6], "duration_s")]
+)
+def test_times_beyond_reason_are_refused(time: list[float], name: str) -> None:
+    with pytest.raises(InputError) as caught:
+        resample(np.array(time), np.array([[1.0, 0, 0, 0], [0.0, 1.0, 0, 0]]), 1000.0)
+    assert caught.value.name == name

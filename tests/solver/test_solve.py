@@ -45,6 +45,8 @@ def with_(array: np.ndarray, index: object, value: float) -> np.ndarray:
         (with_(TIME, 5, np.inf), C, "time", 5),
         (with_(TIME, 5, TIME[4]), C, "time", 5),
         (with_(TIME, 5, -1.0), C, "time", 5),
+        (with_(TIME, 5, TIME[4] + 1e-12), C, "time", 5),
+        (with_(TIME, 0, -1e308), C, "time", 0),
         (TIME, with_(C, (7, 1, 2), np.nan), "attitude", 7),
         (TIME, with_(C, (7, 1, 2), 0.5), "attitude", 7),
         (TIME, -C, "attitude", 0),
