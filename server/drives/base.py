@@ -30,7 +30,8 @@ class Status(IntFlag):
     FAULT = 8  # the drive reports a fault of its own
     ENCODER = 16  # a position cannot be trusted; it is nan
     LINK_LOST = 32  # no word from the table: the arrays are left as they were
-    STALE_WRITE = 64  # refused a write of an older epoch, or out of sequence
+    STALE_WRITE = 64  # refused a write of an older epoch or series, or out of sequence
+    UNCONFIRMED = 128  # the last enable, brake or disable is on its way: the table has not said yet that it took it
 
 
 class Drive(Protocol):
@@ -45,6 +46,8 @@ class Drive(Protocol):
     def enable(self) -> None:
         """Release the brakes and follow writes from the present position; their sequence begins anew.
 
+        May return before the table has heard of it: until then `read` reports `UNCONFIRMED`, and nothing of a time
+        before (no `ENABLED`, no `WATCHDOG`). Like `brake` and `disable` it is repeated until it arrives.
         Raises `DriveError`.
         """
         ...

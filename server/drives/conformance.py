@@ -50,6 +50,16 @@ class DriveConformance:
             drive.write(at, np.zeros(4), np.zeros(4), 1, sequence)
         return now, sequence, status
 
+    def _until_taken(self, drive: Drive, now: float, ticks: int = 2000) -> tuple[float, int]:
+        """Ticks without writes until the table has taken the last order; the status then."""
+        position, rate = np.zeros(4), np.zeros(4)
+        for _ in range(ticks):
+            now = self.tick(now)
+            status = drive.read(now, position, rate)
+            if not status & (Status.UNCONFIRMED | Status.LINK_LOST):
+                return now, status
+        raise AssertionError(f"an order is not taken within {ticks} ticks")
+
     # --- the promises ---
 
     def test_it_has_a_name(self) -> None:
@@ -150,6 +160,67 @@ class DriveConformance:
         drive.read(self.tick(now), position, rate)
         assert not status & Status.ENABLED
         assert np.abs(position - far).max() > math.radians(9.0)
+        drive.close()
+
+    def test_it_does_not_follow_when_disabled(self) -> None:
+        """`disable` wins over writes, and shows."""
+        drive, now, position, rate = self._ready()
+        drive.enable()
+        start = position.copy()
+        now, sequence, _ = self._hold(drive, now, start, 50, 0)
+        drive.disable()
+        now, sequence, _ = self._hold(drive, now, start + math.radians(10.0), 50, sequence)
+        now, status = self._until_taken(drive, now)
+        drive.read(self.tick(now), position, rate)
+        assert not status & Status.ENABLED
+        assert np.abs(position - start).max() < math.radians(1.0)
+        drive.close()
+
+    def test_enabling_again_begins_a_new_series(self) -> None:
+        """After `brake` and after `disable` the sequence counts from one again, and nothing of before is refused."""
+        drive, now, position, rate = self._ready()
+        start = position.copy()
+        moving = np.array([1.0 if i in self.rig.geometry.frames else 0.0 for i in range(4)]) * math.radians(0.5)
+        drive.enable()
+        now, _, _ = self._hold(drive, now, start, 50, 1000)
+        for turn, end in enumerate((drive.brake, drive.disable), 1):
+            end()
+            now, _ = self._until_taken(drive, now)
+            drive.enable()
+            seen = 0
+            n = round(0.2 * self.rate_hz)
+            at = start + (turn - 1) * moving
+            for k in range(1, n + round(0.2 * self.rate_hz)):
+                now = self.tick(now)
+                seen |= drive.read(now, position, rate)
+                share = min(k, n) / n
+                drive.write(at + share * share * (3.0 - 2.0 * share) * moving, np.zeros(4), np.zeros(4), 1, k)
+            status = drive.read(self.tick(now), position, rate)
+            assert status & Status.ENABLED
+            assert not seen & Status.STALE_WRITE
+            assert np.abs(position - (start + turn * moving)).max() < math.radians(0.05)
+        drive.close()
+
+    def test_enabling_again_forgets_the_watchdog(self) -> None:
+        """What is read after `enable` is never the watchdog of before."""
+        drive, now, position, rate = self._ready()
+        start = position.copy()
+        drive.enable()
+        now, _, _ = self._hold(drive, now, start, 50, 0)
+        status = 0
+        for _ in range(round(1.0 * self.rate_hz)):
+            now = self.tick(now)
+            status |= drive.read(now, position, rate)
+        assert status & Status.WATCHDOG
+        drive.enable()
+        status = drive.read(now, position, rate)  # as the loop does: in the same tick, before the table can have heard
+        assert not status & Status.WATCHDOG
+        assert bool(status & Status.UNCONFIRMED) is not bool(status & Status.ENABLED)
+        sequence = 0
+        while not status & Status.ENABLED:
+            assert sequence < 2000
+            now, sequence, status = self._hold(drive, now, start, 1, sequence)
+            assert not status & Status.WATCHDOG
         drive.close()
 
     def test_disable_and_close_are_safe_at_any_time(self) -> None:

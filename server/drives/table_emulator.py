@@ -34,35 +34,49 @@ class Table:
     def __post_init__(self) -> None:
         self._servos = SimulatedDrive(self.rig, self.rate_hz, SimulatedOptions(watchdog_s=self.watchdog_s))
         self._position, self._rate = np.zeros(4), np.zeros(4)
-        self._taken = 0
-        self._status = 0
+        self._order = 0  # number of the newest order taken
+        self._taken = 0  # sequence of the newest demand taken since
+        self._stale = False
 
     def begin(self, now: float) -> None:
         """Power on, brakes holding."""
         self._servos.connect(now)
 
     def take(self, packet: CommandPacket) -> None:
-        """Do what a command datagram asks."""
+        """Do what a command datagram asks: an order once, a demand where it belongs to the newest order."""
+        if packet.order is Order.FOLLOW:
+            self._follow(packet)
+            return
+        # Older orders come late or twice: an enable that was overtaken by a disable must not undo it.
+        if packet.order is Order.HELLO or packet.number <= self._order:
+            return
+        self._order = packet.number
         match packet.order:
             case Order.ENABLE:
                 self._servos.enable()
-                self._taken = packet.sequence
-            case Order.FOLLOW:
-                x, v, a = (np.array(n) / _DEG for n in (packet.position, packet.rate, packet.acceleration))
-                self._servos.write(x, v, a, packet.epoch, packet.sequence)
-                self._taken = max(self._taken, packet.sequence)
+                self._taken = 0
             case Order.BRAKE:
                 self._servos.brake()
             case Order.DISABLE:
                 self._servos.disable()
-            case Order.HELLO:
-                pass
+
+    def _follow(self, packet: CommandPacket) -> None:
+        if packet.number < self._order:
+            self._stale = True
+        if packet.number != self._order:
+            return  # of an earlier series; or its order has not come yet, and a demand never enables
+        x, v, a = (np.array(n) / _DEG for n in (packet.position, packet.rate, packet.acceleration))
+        self._servos.write(x, v, a, packet.epoch, packet.sequence)
+        self._taken = max(self._taken, packet.sequence)
 
     def advance(self, now: float) -> StatePacket:
         """One period passes: what the encoders say."""
-        self._status = int(self._servos.read(now, self._position, self._rate) & ~Status.LINK_LOST)
+        status = self._servos.read(now, self._position, self._rate) & ~Status.LINK_LOST
+        if self._stale:
+            status |= Status.STALE_WRITE
+            self._stale = False
         x, v = (self._position * _DEG).tolist(), (self._rate * _DEG).tolist()
-        return StatePacket(self._status, self._taken, now, tuple(x), tuple(v))
+        return StatePacket(int(status), self._order, self._taken, now, tuple(x), tuple(v))
 
 
 def serve(table: Table, listener: socket.socket, log: TextIO | None, until: float) -> None:

@@ -1,6 +1,7 @@
 """The `udp` drive: demands to a table over UDP, one datagram a tick each way (see `packet`).
 
 The table's own watchdog brakes where our datagrams stop; ours reports the link as lost where the table's do.
+Enable, brake and disable are numbered, and repeated once a tick until the table names the number it took.
 """
 
 import math
@@ -18,6 +19,7 @@ from solver.rig import Rig
 
 _DEG = 180.0 / math.pi
 _PER_READ = 32  # datagrams taken in one read: a burst is drained, a flood does not stall the loop
+_ENABLE_WITHIN = math.radians(0.1)  # of the demand: a table that is enabled later than that would jump
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,11 @@ class UdpDrive:
         self._socket: socket.socket | None = None
         self._newest: StatePacket | None = None
         self._heard = -math.inf
-        self._epoch = self._sequence = 0
+        self._epoch = self._sequence = -1  # of the last demand, in this series
+        self._ordered = Order.HELLO  # the last order, and its number
+        self._number = 0
+        self._confirmed = True
+        self._repeat = False
         self._zero = (0.0,) * 4
         self._stale = False
 
@@ -62,9 +68,10 @@ class UdpDrive:
             raise DriveError(f"udp drive: {o.host}:{o.port}: {cause}") from cause
         self._socket = made
         self._newest = None
+        self._ordered, self._confirmed, self._repeat = Order.HELLO, True, False
         deadline = time.monotonic() + o.connect_s
         while time.monotonic() < deadline:
-            self._order(Order.HELLO)
+            self._send_order(Order.HELLO)
             try:
                 self._newest = decode_state(made.recv(STATE_SIZE + 1)) or self._newest
             except OSError:
@@ -80,6 +87,7 @@ class UdpDrive:
         """Ask for the brakes to be released; whether they are, the next reads tell."""
         if self._socket is None:
             raise DriveError("udp drive: not connected")
+        self._epoch = self._sequence = -1
         self._order(Order.ENABLE)
 
     def read(self, now: float, position: Array, rate: Array) -> int:
@@ -95,15 +103,27 @@ class UdpDrive:
             if packet is not None and (self._newest is None or packet.time_s >= self._newest.time_s):
                 self._newest = packet
                 self._heard = now
+                self._stale = self._stale or bool(packet.status & Status.STALE_WRITE)  # said once: not to be skipped
         newest = self._newest
         if newest is None or now - self._heard > self._options.link_lost_s:
             return int(Status.LINK_LOST)
+        if newest.number == self._number:
+            self._confirmed = True  # for good: a table that restarts forgets its number, and must not be enabled again
+        elif not self._confirmed and self._repeat:
+            self._send_order(self._ordered)
         position[:] = newest.position
         rate[:] = newest.rate
         np.divide(position, _DEG, out=position)
         np.divide(rate, _DEG, out=rate)
-        stale, self._stale = self._stale, False
-        return newest.status | (Status.STALE_WRITE if stale else 0)
+        status = newest.status & ~Status.STALE_WRITE  # until the next datagram it would be said again
+        if self._stale:
+            self._stale = False
+            status |= Status.STALE_WRITE
+        if not self._confirmed:
+            status |= Status.UNCONFIRMED
+            if self._ordered is Order.ENABLE:
+                status &= ~(Status.ENABLED | Status.WATCHDOG)  # of the time before
+        return int(status)
 
     def write(self, position: Array, rate: Array, acceleration: Array, epoch: int, sequence: int) -> None:
         """Send one demand. A full send buffer drops it: the next tick's is newer anyway."""
@@ -111,27 +131,44 @@ class UdpDrive:
             self._stale = True
             return
         self._epoch, self._sequence = epoch, sequence
-        x, v, a = ((values * _DEG).tolist() for values in (position, rate, acceleration))
-        self._send(CommandPacket(Order.FOLLOW, epoch, sequence, time.monotonic(), tuple(x), tuple(v), tuple(a)))
+        x, v, a = (tuple((values * _DEG).tolist()) for values in (position, rate, acceleration))
+        if not self._confirmed and self._ordered is Order.ENABLE and self._departed(position):
+            self._repeat = False
+        self._send(CommandPacket(Order.FOLLOW, self._number, epoch, sequence, time.monotonic(), x, v, a))
 
     def brake(self) -> None:
-        """Ask the table to brake."""
+        """Have the table brake."""
         self._order(Order.BRAKE)
 
     def disable(self) -> None:
-        """Ask the table to power off."""
+        """Have the table power off."""
         self._order(Order.DISABLE)
 
     def close(self) -> None:
-        """Close the socket; the table's watchdog brakes."""
+        """Close the socket. The table is told once more to brake, or to power off where that was the last order.
+
+        Nobody is left to hear whether it did: its watchdog acts where it did not.
+        """
         if self._socket is not None:
-            self._order(Order.BRAKE)
+            self._order(Order.DISABLE if self._ordered is Order.DISABLE else Order.BRAKE)
             self._socket.close()
             self._socket = None
 
     def _order(self, order: Order) -> None:
+        """Begin a new order. Its number is above any that the table has taken, from whomever."""
+        taken = 0 if self._newest is None else self._newest.number
+        self._number = max(self._number, taken) + 1
+        self._ordered, self._confirmed, self._repeat = order, False, True
+        self._send_order(order)
+
+    def _departed(self, demand: Array) -> bool:
+        """Whether the demand has left the table that is still to be enabled."""
+        newest = self._newest
+        return newest is not None and bool(np.abs(demand - np.radians(newest.position)).max() > _ENABLE_WITHIN)
+
+    def _send_order(self, order: Order) -> None:
         zero = self._zero
-        self._send(CommandPacket(order, self._epoch, self._sequence, time.monotonic(), zero, zero, zero))
+        self._send(CommandPacket(order, self._number, 0, 0, time.monotonic(), zero, zero, zero))
 
     def _send(self, packet: CommandPacket) -> None:
         if self._socket is None:

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import os
+import random
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,10 +13,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from server.drives.packet import Order
 from server.plan_folder import PlanFolder, PlanInfo, plan_hash
-from server.runtime.config import GuardConfig, Tolerance
+from server.runtime.config import GuardConfig, RigConfig, Tolerance
+from server.runtime.host import RigHost
 from server.runtime.replay import is_whole, read_events, read_samples, repair
 from server.session.states import STATES
+from tests.server.drives.relay import Relay, relay
 from tests.server.drives.test_udp import emulator
 from tests.server.runtime.rigs import config_of, hosted, plan_of, written
 from tests.server.runtime.test_host import within_limits
@@ -174,6 +178,99 @@ def test_a_table_that_vanishes_is_a_lost_link_and_can_be_connected_again(tmp_pat
                 within_limits(host.samples(0, 1 << 20)[0], host)
 
     asyncio.run(fly())
+
+
+@contextlib.contextmanager
+def bad_network(tmp_path: Path, *arguments: str) -> Iterator[tuple[Relay, RigConfig]]:
+    """A table behind a relay, and the settings of its rig."""
+    with emulator("--rig", "vertical-4", *arguments) as port, relay(port) as network:
+        options = {"port": network.port, "link_lost_s": 2.0, "connect_s": 10.0}
+        yield network, config_of(tmp_path, rig="vertical-4", drive="udp", drive_options=options, guard=WIDE)
+
+
+def test_a_table_that_never_hears_enable_is_named_and_not_a_following_error(tmp_path: Path) -> None:
+    async def fly() -> None:
+        with bad_network(tmp_path) as (network, config):
+            network.loses = lambda command: command.order is Order.ENABLE
+            plan = written(tmp_path / "plan", plan_of(config.rig, 4.0))
+            async with hosted(config) as (_, operator):
+                await operator.arm(plan)
+                snapshot = await operator.until("faulted")
+                (alarm,) = [a for a in snapshot.alarms if a.severity != "warning"]
+                assert (alarm.code, alarm.first) == ("drive_not_enabled", True)
+                assert "not confirmed" in alarm.message
+                network.loses = lambda _: False
+                await operator.recover()
+                await operator.must("load", plan_folder=str(plan))
+                await operator.must("arm")
+                await asyncio.sleep(0.5)
+                assert operator.host.snapshot().state == "armed"
+
+    asyncio.run(fly())
+
+
+def test_an_estop_that_does_not_power_the_table_off_is_said(tmp_path: Path) -> None:
+    async def fly() -> None:
+        with bad_network(tmp_path, "--watchdog", "1.0") as (network, config):
+            plan = written(tmp_path / "plan", plan_of(config.rig, 4.0))
+            async with hosted(config) as (host, operator):
+                await operator.arm(plan)
+                await asyncio.sleep(0.5)
+                network.loses = lambda command: command.order is Order.DISABLE
+                host.estop("test")
+                await operator.until("estopped")
+                await _alarm(host, "drive_not_disabled")
+                snapshot = host.snapshot()
+                assert snapshot.state == "estopped"
+                assert [a.code for a in snapshot.alarms if a.first] == ["estop"]
+                network.loses = lambda _: False
+
+    asyncio.run(fly())
+
+
+def test_on_a_network_that_loses_a_flight_is_flown_and_an_estop_powers_the_table_off(tmp_path: Path) -> None:
+    log = tmp_path / "table.log"
+
+    async def fly() -> None:
+        with bad_network(tmp_path, "--watchdog", "1.0", "--log", str(log)) as (network, config):
+            chance = random.Random(4)
+            network.loses = lambda _: chance.random() < 0.2
+            network.loses_state = lambda: chance.random() < 0.2
+            plan = written(tmp_path / "plan", plan_of(config.rig, 6.0, swing=0.5))
+            async with hosted(config) as (host, operator):
+                await operator.fly(plan)
+                await asyncio.sleep(1.5)
+                assert host.snapshot().state == "running"
+                host.estop("test")
+                snapshot = await operator.until("estopped", "faulted", "disconnected")
+                assert snapshot.state == "estopped", snapshot.alarms
+                for _ in range(200):
+                    if _table_status(log) == 0:
+                        break
+                    await asyncio.sleep(0.1)
+                assert _table_status(log) == 0  # neither enabled nor braking: powered off
+                await asyncio.sleep(0.5)
+                wrong = [a.code for a in host.snapshot().alarms if a.severity != "warning"]
+                assert wrong == ["estop"]
+                within_limits(host.samples(0, 1 << 20)[0], host)
+
+    asyncio.run(fly())
+
+
+async def _alarm(host: RigHost, code: str) -> None:
+    """Wait for an alarm."""
+    for _ in range(200):
+        if code in [a.code for a in host.snapshot().alarms]:
+            return
+        await asyncio.sleep(0.1)
+    raise AssertionError(f"no alarm {code}: {host.snapshot().alarms}")
+
+
+def _table_status(log: Path) -> int:
+    """The newest status in the emulator's log."""
+    with log.open() as file:
+        rows = [line.split() for line in file if line.endswith("\n")]
+    return int(rows[-1][1])
 
 
 def _child_on(port: int) -> int:
