@@ -1,7 +1,8 @@
 """Alarms: severity, latched first-out, acknowledge, history. Pure; told the time [s since the Unix epoch].
 
 The first alarm of a chain is marked `first`: after one cause many alarms follow, and the operator needs the cause.
-Faults stay until they are acknowledged and the session is reset; warnings leave when acknowledged.
+Warnings leave when acknowledged. Faults stay through a latch, until the session is reset; outside one nothing is to be
+reset, and they leave when acknowledged too (`link_lost`, which leads to disconnected), so that the next is a `first`.
 """
 
 from dataclasses import dataclass, replace
@@ -34,6 +35,7 @@ class Alarm:
     first: bool = False
     acknowledged_by: str | None = None
     count: int = 1
+    last_time_s: float | None = None  # of the newest occurrence, where there was more than one
 
 
 @dataclass(frozen=True)
@@ -55,12 +57,16 @@ class AlarmBook:
         limit: float | None = None,
         unit: str | None = None,
     ) -> "AlarmBook":
-        """The book with this alarm standing. The same again (code, frame, severity) only counts up."""
+        """The book with this alarm standing. The same again (code, frame, severity) only counts up, with its time."""
         for index, old in enumerate(self.standing):
             same = (old.code, old.frame, old.severity) == (code, frame, severity)
             if same and old.acknowledged_by is None:
-                again = replace(old, count=old.count + 1)
-                return replace(self, standing=(*self.standing[:index], again, *self.standing[index + 1 :]))
+                again = replace(old, count=old.count + 1, last_time_s=time_s)
+                return replace(
+                    self,
+                    standing=(*self.standing[:index], again, *self.standing[index + 1 :]),
+                    history=tuple(again if a.number == again.number else a for a in self.history),
+                )
         latching = severity is not Severity.WARNING
         first = latching and not any(a.severity is not Severity.WARNING for a in self.standing)
         number = self.last_number + 1
@@ -80,7 +86,7 @@ class AlarmBook:
         return replace(self, standing=standing, history=history)
 
     def cleared(self) -> "AlarmBook":
-        """The book after a reset: what was acknowledged no longer stands."""
+        """The book after a reset, or where there is nothing to reset: what was acknowledged no longer stands."""
         return replace(self, standing=tuple(a for a in self.standing if a.acknowledged_by is None))
 
     @property

@@ -133,6 +133,9 @@ class SessionMachine:
             self._lease = self._lease.checked(who, token, now)
         if command is Command.ACKNOWLEDGE:
             self.alarms = self.alarms.acknowledged(who, alarms)
+            if self.state not in table.LATCHED:
+                # No reset comes here: what stood on would take `first` from the next fault.
+                self.alarms = self.alarms.cleared()
             self.revision += 1
             return ()
         row = self._find(command)

@@ -12,7 +12,8 @@ def test_the_first_fault_of_a_chain_is_marked_and_warnings_are_not() -> None:
 
 def test_the_same_again_only_counts() -> None:
     book = AlarmBook().raised("a", Severity.FAULT, "", 0.0, frame="base").raised("a", Severity.FAULT, "", 1.0, "base")
-    assert [(a.count, a.time_s) for a in book.standing] == [(2, 0.0)]
+    assert [(a.count, a.time_s, a.last_time_s) for a in book.standing] == [(2, 0.0, 1.0)]
+    assert book.history == book.standing
     assert len(book.raised("a", Severity.FAULT, "", 1.0, frame="outer").standing) == 2
     # A warning that turns into a fault is a new alarm: it latches.
     warned = AlarmBook().raised("a", Severity.WARNING, "", 0.0).raised("a", Severity.FAULT, "", 1.0)

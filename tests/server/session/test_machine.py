@@ -1,21 +1,17 @@
-"""The machine: refusals change nothing, binding, silence, resets; and a model-based walk through everything."""
+"""The machine: refusals change nothing, binding, silence, alarms, resets. A walk through everything: test_model.py."""
 
 import dataclasses
 import time
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, settings
-from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
 from server.session import table
 from server.session.alarms import Severity
-from server.session.errors import BindingError, IllegalCommandError, LeaseError, NotReadyError, SessionError
+from server.session.errors import BindingError, IllegalCommandError, LeaseError, NotReadyError
 from server.session.lease import LeaseToken
 from server.session.machine import Binding, SessionMachine, SilencePolicy
-from server.session.states import IN_MOTION, NEEDS_NO_LEASE, Action, Command, Event, State
-from server.session.table import When
+from server.session.states import Action, Command, Event, State
 
 RIG = ("rig", "a" * 64)
 PLAN = Binding("p", "b" * 64, *RIG)
@@ -67,6 +63,25 @@ def test_an_illegal_command_changes_nothing_and_says_what_is_allowed(state: Stat
         assert memory(session.machine) == before
         assert (refused.value.state, refused.value.command) == (state, command)
         assert refused.value.allowed == table.allowed(state)
+
+
+@pytest.mark.parametrize(
+    ("epochs_ago", "sequence", "code"),
+    [(0, 4, "stale_command"), (0, 5, "stale_command"), (1, 6, "lease_lost")],
+    ids=["old", "duplicate", "former epoch"],
+)
+def test_a_late_a_doubled_and_a_former_holder_s_command_are_refused(epochs_ago: int, sequence: int, code: str) -> None:
+    session = Session()
+    session.machine.lease_action("release", "anna", session.now)  # what was sent before is of a former epoch
+    session.epoch = session.machine.lease_action("take", "anna", session.now).epoch
+    session.sequence = 4
+    session.say(Command.CONNECT)
+    before = memory(session.machine)
+    for command in set(Command) - {Command.STOP, Command.ESTOP}:
+        with pytest.raises(LeaseError) as refused:
+            session.machine.command(command, "anna", LeaseToken(session.epoch - epochs_ago, sequence), session.now)
+        assert refused.value.code == code
+        assert memory(session.machine) == before
 
 
 def test_load_binds_and_arm_refuses_another_pair() -> None:
@@ -157,6 +172,28 @@ def test_reset_waits_for_rest_and_acknowledgement() -> None:
     assert [a.acknowledged_by for a in machine.alarms.history] == ["anna", "anna"]
 
 
+@pytest.mark.parametrize("connected", [False, True])
+def test_a_lost_link_that_was_acknowledged_is_not_the_cause_of_the_next_fault(connected: bool) -> None:
+    session = Session().to(State.RUNNING)
+    machine = session.machine
+    machine.alarm("link_lost", Severity.FAULT, "", 0.0)
+    machine.event(Event.LINK_LOST)
+    for command in (Command.CONNECT, Command.ACKNOWLEDGE) if connected else (Command.ACKNOWLEDGE, Command.CONNECT):
+        session.say(command)
+    assert machine.alarms.standing == ()
+    assert [(a.code, a.acknowledged_by) for a in machine.alarms.history] == [("link_lost", "anna")]
+    session.say(Command.LOAD, binding=PLAN)
+    session.say(Command.ARM)
+    assert machine.alarm("guard_rate", Severity.FAULT, "", 1.0).first
+
+
+def test_what_nobody_acknowledged_stands_on_over_a_connect() -> None:
+    session = Session()
+    session.machine.alarm("rig_process_lost", Severity.FAULT, "", 0.0)
+    session.say(Command.CONNECT)
+    assert [a.first for a in session.machine.alarms.unacknowledged] == [True]
+
+
 def test_a_latch_is_not_cleared_by_pulling_the_cable() -> None:
     session = Session().to(State.RUNNING)
     machine = session.machine
@@ -180,143 +217,6 @@ def test_a_revision_for_every_visible_change() -> None:
     machine.lease_action("renew", "anna", session.now)
     assert seen == sorted(set(seen))
     assert machine.revision == seen[-1]  # a renewal is not news
-
-
-class Model(RuleBasedStateMachine):
-    """Random commands, events, leases, alarms and time, against a model that knows only the table."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.machine = SessionMachine(*RIG, POLICY)
-        self.now = 0.0
-        self.state = State.DISCONNECTED
-        self.linked = False
-        self.flight = False
-        self.holder: str | None = None
-        self.epoch = 0
-        self.sequence = 0
-
-    def expected(self, trigger: Command | Event) -> State | None:
-        holding = {When.FLIGHT if self.flight else When.MOVE, When.LINKED if self.linked else When.UNLINKED}
-        rows = [
-            row
-            for row in table.TABLE
-            if row.trigger == trigger and self.state in row.sources and (row.when in holding or row.when is When.ALWAYS)
-        ]
-        assert len(rows) <= 1
-        return rows[0].target if rows else None
-
-    @rule(seconds=st.floats(0.0, 30.0))
-    def pass_time(self, seconds: float) -> None:
-        self.now += seconds
-
-    @rule(who=st.sampled_from(["anna", "bert"]), action=st.sampled_from(["take", "takeover", "release", "renew"]))
-    def lease(self, who: str, action: str) -> None:
-        before = memory(self.machine)
-        try:
-            lease = self.machine.lease_action(action, who, self.now)
-        except LeaseError:
-            assert memory(self.machine) == before
-            assert self.holder != who
-            return
-        if action in ("take", "takeover") and self.holder != who:
-            assert lease.epoch > self.epoch
-            self.holder, self.sequence = who, 0
-        elif action == "release":
-            assert self.holder == who
-            self.holder = None
-        self.epoch = lease.epoch
-
-    @rule(
-        command=st.sampled_from(list(Command)),
-        who=st.sampled_from(["anna", "bert"]),
-        step=st.integers(-1, 3),
-        old=st.booleans(),
-        binding=st.sampled_from([None, PLAN, LIVE, dataclasses.replace(PLAN, plan_hash="9" * 64)]),
-    )
-    def command(self, command: Command, who: str, step: int, old: bool, binding: Binding | None) -> None:
-        token = LeaseToken(self.epoch - old, self.sequence + step)
-        before = memory(self.machine)
-        entitled = command in NEEDS_NO_LEASE or (self.holder == who and not old and step > 0)
-        target = self.expected(command)
-        try:
-            actions = self.machine.command(command, who, token, self.now, binding=binding)
-        except SessionError as refusal:
-            assert memory(self.machine) == before
-            if entitled and command is not Command.ACKNOWLEDGE and target is None:
-                assert type(refusal) is IllegalCommandError  # noqa: PT017
-            return
-        assert entitled
-        if command not in NEEDS_NO_LEASE:
-            self.sequence = token.sequence
-        if command is Command.ACKNOWLEDGE:
-            return
-        assert target is not None
-        self.state = target
-        if command is Command.CONNECT:
-            self.linked = True
-        if command in (Command.START, Command.MOVE, Command.HOME, Command.JOG):
-            self.flight = command is Command.START
-        assert (Action.BRAKE_FASTEST in actions) == (command is Command.ESTOP)
-
-    @rule(pick=st.integers(0, 100), binding=st.sampled_from([PLAN, LIVE]))
-    def entitled_command(self, pick: int, binding: Binding) -> None:
-        """What the holder may do here, so that the walk gets deep."""
-        if self.holder is None:
-            self.lease("anna", "take")
-        assert self.holder is not None
-        # E-stop on one pick in ten: from everywhere it would end every walk.
-        choices = [c for c in table.allowed(self.state) if c is not Command.ESTOP or pick % 10 == 0]
-        bound = binding if Command.LOAD in choices else None
-        self.command(choices[pick % len(choices)], self.holder, 1, False, bound)
-
-    @rule(event=st.sampled_from([e for e in Event if e not in (Event.FAULT, Event.LINK_LOST)]))
-    def expected_event(self, event: Event) -> None:
-        self.event(event)
-
-    @rule(event=st.sampled_from(list(Event)))
-    def event(self, event: Event) -> None:
-        target = self.expected(event)
-        self.machine.event(event)
-        if event is Event.LINK_LOST:
-            self.linked = False
-        if target is not None:
-            self.state = target
-
-    @rule(severity=st.sampled_from(list(Severity)), code=st.sampled_from(["a", "b"]))
-    def alarm(self, severity: Severity, code: str) -> None:
-        self.machine.alarm(code, severity, code, self.now)
-
-    @precondition(lambda self: self.state in IN_MOTION)
-    @rule()
-    def silence(self) -> None:
-        for event in self.machine.silence(self.now):
-            target = self.expected(event)
-            self.machine.event(event)
-            self.state = target or self.state
-
-    @invariant()
-    def agrees(self) -> None:
-        assert self.machine.state is self.state
-        assert self.machine.linked == self.linked
-        assert self.machine.allowed() == table.allowed(self.state)
-
-    @invariant()
-    def is_sound(self) -> None:
-        machine = self.machine
-        if machine.state in (State.READY, State.ARMED, *IN_MOTION):
-            assert machine.binding is not None
-            assert machine.binding.rig_hash == machine.rig_hash
-        if machine.state in IN_MOTION:
-            assert machine.moving
-        first = [a for a in machine.alarms.standing if a.first]
-        assert len(first) <= 1
-
-
-TestModel = Model.TestCase
-TestModel.settings = settings(
-    max_examples=150, stateful_step_count=60, deadline=None, suppress_health_check=[HealthCheck.too_slow]
-)
 
 
 def test_silence_policies_must_rise() -> None:
