@@ -35,7 +35,8 @@ from server.api.routes import (
 from server.api.run_files import RunFiles
 from server.api.services import Services
 from server.plan_folder import rig_hash
-from server.runtime.config import GuardConfig, LiveConfig, RigConfig, Tolerance
+from server.rig_config import GuardConfig, OperatingConfig, Tolerance
+from server.runtime.config import LiveConfig, RigConfig
 from server.scene.errors import PayloadMeshError, SceneError
 from server.scene.on_demand import ScenesOnDemand
 from server.scene.proxy import router as scene_router
@@ -122,7 +123,10 @@ def _lifespan(settings: Settings) -> Callable[[FastAPI], Any]:
 
 
 def _build(settings: Settings, folder: Path, database: Database, scenes: SceneServer) -> Services:
-    rig_store = RigStore(folder / "rigs")
+    bridged_ms = settings.live_extrapolate_ms
+    # It warns before the source is let go, and trips where it is not.
+    guard = GuardConfig(stale_ms=Tolerance(0.4 * bridged_ms, 2.0 * bridged_ms))
+    rig_store = RigStore(folder / "rigs", OperatingConfig(guard=guard))
     trajectory_store = TrajectoryStore(database, folder / "trajectories")
     plan_store = PlanStore(database, folder / "plans")
     run_folder = folder / "runs"
@@ -137,20 +141,19 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         return None if rows is None else rows[0]
 
     def config(rig: str) -> RigConfig:
-        bridged_ms = settings.live_extrapolate_ms
+        entry = rig_store.get(rig)
         return RigConfig(
             rig,
-            rig_store.get(rig).rig,
+            entry.rig,
             directory(rig),
             run_folder,
             rate_hz=settings.rig_rate_hz,
-            # It warns before the source is let go, and trips where it is not.
-            guard=GuardConfig(stale_ms=Tolerance(0.4 * bridged_ms, 2.0 * bridged_ms)),
             live=LiveConfig(
                 udp_port=settings.live_udp_ports.get(rig),
                 delay_ms=settings.live_delay_ms,
                 extrapolate_ms=bridged_ms,
             ),
+            **vars(entry.operating),
         )
 
     def request(plan: str) -> PlanRequest:

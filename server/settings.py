@@ -3,6 +3,7 @@
 import ipaddress
 import os
 from pathlib import Path
+from typing import Annotated
 
 from pydantic import Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -12,6 +13,9 @@ def default_data_dir() -> Path:
     """Where data goes unless told otherwise: $XDG_DATA_HOME/fullpose, by default ~/.local/share/fullpose."""
     root = os.environ.get("XDG_DATA_HOME")
     return (Path(root) if root else Path.home() / ".local" / "share") / "fullpose"
+
+
+Port = Annotated[int, Field(ge=1, le=65535)]
 
 
 class Settings(BaseSettings):
@@ -28,7 +32,7 @@ class Settings(BaseSettings):
     max_upload_bytes: int = Field(default=512 * 1024 * 1024, gt=0)
     max_solve_samples: int = Field(default=1_000_000, gt=0)
     rig_rate_hz: float = Field(default=1000.0, ge=100.0, le=4000.0)  # as `RigConfig` has it
-    live_udp_ports: dict[str, int] = {}  # rig name to the port where its live source is heard, on loopback
+    live_udp_ports: dict[str, Port] = {}  # rig name to the port where its live source is heard, on loopback
     live_delay_ms: float = Field(
         default=5.0, ge=0.0, le=1000.0
     )  # flown that much late: jitter up to it is interpolated

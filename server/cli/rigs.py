@@ -1,6 +1,5 @@
-"""`fullpose rigs`: the built-in rigs and their limits."""
+"""`fullpose rigs`: the built-in rigs and their limits; one of them as a rig file; a rig file checked."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,20 +10,48 @@ if TYPE_CHECKING:
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
-    app.command("rigs", help="List the built-in rigs, or check a rig file.")(rigs)
+    app.command("rigs", help="List the built-in rigs, print one as a rig file, or check a rig file.")(rigs)
 
 
-def rigs(file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="A rig file to check.")] = None) -> None:
-    """Print rigs as a table."""
-    from server.store.rig_file import Payload, RigEntry, read_rig
+def rigs(
+    rig: Annotated[
+        str | None, typer.Argument(metavar="NAME|FILE", help="A built-in rig to print, or a rig file to check.")
+    ] = None,
+) -> None:
+    """Print rigs as a table, or one as TOML."""
+    from server.store.rig_file import Payload, RigEntry, find_rig
     from solver.rig import builtin_rigs
 
-    if file is not None:
-        entries = [read_rig(file)]
-    else:
-        entries = [RigEntry(rig, Payload(), builtin=True) for rig in builtin_rigs().values()]
-    for entry in entries:
-        typer.echo(_table(entry))
+    if rig is None:
+        for known in builtin_rigs().values():
+            typer.echo(_table(RigEntry(known, Payload(), builtin=True)))
+        return
+    entry = find_rig(rig)
+    if entry.builtin:
+        from server.store.rig_toml import rig_toml
+
+        typer.echo(rig_toml(entry.rig), nl=False)
+        return
+    _check_drive(rig, entry)
+    typer.echo(_table(entry))
+    typer.echo(f"  drive   {entry.operating.drive}")
+
+
+def _check_drive(file: str, entry: "RigEntry") -> None:
+    """Raise `FileError` where the drive is not there, or does not take its options. Nothing is connected."""
+    from server.cli._serving import settings_of
+    from server.drives import registry
+    from server.drives.base import DriveError
+    from server.store.errors import FileError
+
+    operating = entry.operating
+    rate_hz = settings_of(None, None, None).rig_rate_hz
+    try:
+        registry.make(operating.drive, entry.rig, rate_hz, operating.drive_options)
+    except DriveError as cause:
+        value = repr({"name": operating.drive} | operating.drive_options)
+        expected = f"a drive that is installed, and options that it takes ({cause})"
+        raise FileError(file, expected, column="drive", value=value, column_word="key") from None
 
 
 def _table(entry: "RigEntry") -> str:

@@ -1,56 +1,37 @@
 """What a rig process is told at its start: one JSON file, one frozen dataclass."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from server.session.machine import SilencePolicy
+from server.rig_config import (
+    ConfigError,
+    GuardConfig,
+    MotionConfig,
+    OperatingConfig,
+    Tolerance,
+    check_not_negative,
+    check_positive,
+)
 from solver.rig import FRAMES, FrameLimits, Geometry, Rig
 
-OWNER_SILENCE = SilencePolicy()
-SERVER_SILENCE = SilencePolicy(1.0, 5.0, 60.0)
+# What rig files say too is in `server.rig_config`, below the store; the loop finds all it needs here.
+__all__ = [
+    "GuardConfig",
+    "LiveConfig",
+    "MotionConfig",
+    "OperatingConfig",
+    "RigConfig",
+    "Tolerance",
+    "decode",
+    "encode",
+    "rig_from_dict",
+    "rig_to_dict",
+]
 _LIMIT_KEYS = ("min", "max", "max_rate", "max_acceleration", "weight", "home")
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """Two levels of one check: warn raises an alarm, trip brakes. None: that level is off; zero is a real limit."""
-
-    warn: float | None
-    trip: float | None
-
-    def __post_init__(self) -> None:
-        for level in (self.warn, self.trip):
-            if level is not None and not level >= 0.0:
-                raise ValueError(f"tolerance {self}: expected levels of zero or more, or none")
-
-
-@dataclass(frozen=True)
-class GuardConfig:
-    """Tolerances of the guard. Position, rate and acceleration limits are the rig's own."""
-
-    following_deg: Tolerance = Tolerance(1.0, 3.0)  # a frame against what it was commanded
-    attitude_deg: Tolerance = Tolerance(1.0, 5.0)  # the payload against the flight, geodesic
-    lateness_ms: Tolerance = Tolerance(2.0, 50.0)  # of one tick
-    misses_per_s: Tolerance = Tolerance(20.0, 200.0)  # deadlines missed in the last second
-    stale_ms: Tolerance = Tolerance(20.0, 100.0)  # age of the live source's newest sample
-    max_step_deg: float = 5.0  # between two commands, whatever the rig's rates
-
-
-@dataclass(frozen=True)
-class MotionConfig:
-    """How the rig moves when it is not on a path. Fractions are of the rig's limits; the others cap or replace them."""
-
-    move_rate_deg_s: float = 60.0
-    move_acceleration_deg_s2: float = 120.0
-    move_jerk_deg_s3: float = 1200.0
-    stop_fraction: float = 0.8  # of the acceleration limit, for a stop; an E-stop takes all of it
-    unlimited_brake_deg_s2: float = 2000.0  # where a frame has no acceleration limit
-    hold_scale_rate: float = 2.0  # fastest change of the path's time scale [1/s]
-    hold_scale_jerk: float = 20.0  # [1/s^2]
 
 
 @dataclass(frozen=True)
@@ -62,32 +43,35 @@ class LiveConfig:
     delay_ms: float = 5.0  # the target is the source's attitude this long ago: jitter up to it is interpolated
     extrapolate_ms: float = 50.0
 
+    def __post_init__(self) -> None:
+        if self.udp_port is not None and not 1 <= self.udp_port <= 65535:
+            raise ConfigError("udp_port", self.udp_port, "1 to 65535, or none for no port")
+        if not self.udp_host:
+            raise ConfigError("udp_host", self.udp_host, "an address of this machine")
+        check_not_negative(self, "delay_ms")
+        check_positive(self, "extrapolate_ms")
+
 
 @dataclass(frozen=True)
-class RigConfig:
-    """Everything a rig process needs. Paths are absolute."""
+class RigConfig(OperatingConfig):
+    """Everything a rig process needs: how the rig is operated (see `OperatingConfig`), and this. Paths are absolute."""
 
     name: str
     rig: Rig
     directory: Path  # of this rig's socket, lock and notes
     runs: Path  # where records go
     rate_hz: float = 1000.0
-    drive: str = "simulated"
-    drive_options: dict[str, Any] = field(default_factory=dict)
-    owner: SilencePolicy = OWNER_SILENCE
-    server: SilencePolicy = SERVER_SILENCE
     exit_idle_s: float = 120.0  # without a server and at rest, the process ends by itself
-    realtime_priority: int | None = 60  # None: ordinary scheduling
-    cpu: int | None = None
-    guard: GuardConfig = GuardConfig()
-    motion: MotionConfig = MotionConfig()
     live: LiveConfig = LiveConfig()
-    min_free_mb: float = 200.0  # below it the session refuses to arm
     after_loss: str | None = None  # why an earlier process of this rig died
 
     def __post_init__(self) -> None:
+        if not self.name:
+            raise ConfigError("name", self.name, "the rig's name")
         if not 100.0 <= self.rate_hz <= 4000.0:
-            raise ValueError(f"rate_hz = {self.rate_hz}: expected 100 to 4000")
+            raise ConfigError("rate_hz", self.rate_hz, "100 to 4000")
+        check_positive(self, "exit_idle_s")
+        super().__post_init__()
 
 
 def rig_to_dict(rig: Rig) -> dict[str, Any]:

@@ -114,6 +114,7 @@ class Desk:
                 if command is Command.START:
                     loop.begin_run(request.who)
             case Command.GO_LIVE:
+                orders.check_inside(loop.rig, loop.motion)
                 self._decide(command, request, now)
                 loop.begin_run(request.who)
             case Command.ACKNOWLEDGE:
@@ -165,7 +166,7 @@ class Desk:
         except DriveError as cause:
             raise OrderError("drive_refused", str(cause)) from cause
         self._decide(Command.ARM, request, now, pair)
-        loop.motion.rest_at(loop.measured)
+        loop.stand(loop.measured)
         loop.enabled = True
 
     def _acknowledge(self, request: wire.Request, now: float) -> None:

@@ -1,8 +1,9 @@
 """The guard between any source of commands and any drive.
 
 `check_command` looks at a command before it is written: finiteness, step, position, rate, acceleration, and whether
-the frame could still brake before its position limit. `observe` looks at what the rig did. Limits that a rig has not
-are infinite; a limit of zero is a limit.
+the frame could still brake before its position limit. A frame that was found outside its range may stand or come back,
+never go farther out. `observe` looks at what the rig did. Limits that a rig has not are infinite; a limit of zero is a
+limit.
 """
 
 import math
@@ -49,7 +50,7 @@ def check_command(dt: float, limits: Array, x: Array, x1: Array, v1: Array, v: A
             return 1 + 8 * i + STEP
         low = limits[LOWER, i]
         high = limits[UPPER, i]
-        if x[i] < low - _POSITION_SLACK or x[i] > high + _POSITION_SLACK:
+        if x[i] < min(low - _POSITION_SLACK, x1[i]) or x[i] > max(high + _POSITION_SLACK, x1[i]):
             found[0], found[1], found[2] = x[i], low if x[i] < low else high, 0.0
             return 1 + 8 * i + POSITION
         rate = limits[MAX_RATE, i]
@@ -62,7 +63,7 @@ def check_command(dt: float, limits: Array, x: Array, x1: Array, v1: Array, v: A
             return 1 + 8 * i + ACCELERATION
         room = high - x[i] if v[i] > 0.0 else x[i] - low
         needed = 0.0 if math.isinf(most) else stopping_distance(v[i], most, dt)
-        if needed > room + _POSITION_SLACK + _RELATIVE_SLACK * needed:
+        if needed > max(0.0, room) + _POSITION_SLACK + _RELATIVE_SLACK * needed:
             found[0], found[1], found[2] = needed, room, 0.0
             return 1 + 8 * i + BRAKING
         if high > low and not math.isinf(high):
@@ -133,26 +134,24 @@ class Guard:
             text = f"{name} frame: the command is not a number; not written"
         return Finding(f"guard_{word}", True, text, name, value, limit, unit)
 
-    def measured(self, measured: Array, due: Array, target: Array) -> tuple[float, Finding | None]:
-        """Compare what the drive measured with what was due: (attitude error [rad] or nan, what was found)."""
+    def measured(self, measured: Array, due: Array, target: Array) -> tuple[float, list[Finding]]:
+        """Compare what the drive measured with what was due: (attitude error [rad] or nan, all that was found)."""
         error = observe(self._axes, measured, due, target, self.following)
         worst, frame = 0.0, 0
         for i in range(4):
             size = abs(self.following[i])
             if not size <= worst:
                 worst, frame = float(size), i
-                if math.isnan(worst):
-                    break  # nothing is worse than no measurement
-        if worst <= self._warn and worst <= self._trip:
-            found = None if math.isnan(error) else self.scalar("attitude_error", math.degrees(error), self._attitude)
-            return error, found
-        degrees = math.degrees(worst)
-        tolerance = self._config.following_deg
-        return error, self.scalar("following_error", degrees, tolerance, "deg", FRAMES[frame])
-
-    @property
-    def _attitude(self) -> Tolerance:
-        return self._config.attitude_deg
+                if math.isnan(worst):  # nothing is worse than no measurement, whatever the tolerance
+                    text = f"{FRAMES[i]} frame: its position is not a number"
+                    return error, [Finding("following_error", True, text, FRAMES[i], worst, math.nan, "deg")]
+        found = []
+        if not (worst <= self._warn and worst <= self._trip):
+            tolerance = self._config.following_deg
+            found.append(self.scalar("following_error", math.degrees(worst), tolerance, "deg", FRAMES[frame]))
+        if not math.isnan(error):
+            found.append(self.scalar("attitude_error", math.degrees(error), self._config.attitude_deg))
+        return error, [each for each in found if each is not None]
 
     def scalar(
         self, code: str, value: float, tolerance: Tolerance, unit: str = "deg", frame: str | None = None

@@ -1,12 +1,14 @@
 """The server's side of a rig process: spawn or adopt it, command it, watch it, read what it shows.
 
 The rig process outlives the server. `RigHost.start` finds a living one by its lock and adopts it, session, lease,
-alarms and all; otherwise it spawns one. When the process dies the host says so at once (a pidfd tells), and starts
-another, which comes up disconnected and carries the alarm.
+alarms and all; otherwise it spawns one. One that runs by other settings than ours is replaced where nothing is bound
+in it, else kept as it is. When the process dies the host says so at once (a pidfd tells), and starts another, which
+comes up disconnected and carries the alarm.
 """
 
 import asyncio
 import contextlib
+import logging
 import os
 import socket
 import threading
@@ -15,10 +17,9 @@ from collections.abc import Coroutine
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from server.runtime import wire
 from server.runtime.config import RigConfig
+from server.runtime.health import beat_age_s, health_of
 from server.runtime.launch import HostError as HostError
 from server.runtime.launch import Launcher
 from server.runtime.link import ControlLink, RigUnreachableError
@@ -29,9 +30,11 @@ from server.session.lease import Lease, LeaseToken
 from server.session.states import Command, State
 from server.session.table import allowed
 
+log = logging.getLogger(__name__)
 REPLY_S = 5.0
 LOAD_S = 60.0  # a live method that has not been used on this machine compiles first
 _END_S = 15.0
+_PUBLISH_S = 10.0
 POLL_S = 0.005
 BEAT_S = 0.05
 SILENT_S = 0.15  # a rig heartbeat older than this counts as not responding
@@ -53,10 +56,10 @@ class RigHost:
         self.config = config
         self.name = config.name
         self.rig = config.rig
-        self.rate_hz = config.rate_hz
         self.adopted = False
         self._place = Place(config.directory)
         self._shared: Shared | None = None
+        self._last: wire.Published | None = None
         self._link: ControlLink | None = None
         self._linking = asyncio.Lock()
         self._launcher = Launcher(self._place)
@@ -82,9 +85,26 @@ class RigHost:
         if pid is None:
             pid = await self._launcher.spawn(self.config)
         await self._attach(pid)
+        if self.adopted:
+            await self._settle()
         self._beat = threading.Thread(target=self._beat_on, name=f"heartbeat to {self.name}", daemon=True)
         self._beat.start()
         self._watch = asyncio.create_task(self._watch_on(), name=f"watch {self.name}")
+
+    async def _settle(self) -> None:
+        """Replace an adopted process that runs by other settings, where nothing is bound in it; else say so."""
+        other = self._launcher.differences(self.config)
+        if not other:
+            return
+        names, published = ", ".join(other), self._published()
+        if published.state not in (State.DISCONNECTED, State.IDLE) or published.alarms:
+            log.warning("rig %s was adopted with other settings than the server's (%s): they stay", self.name, names)
+            return
+        log.info("rig %s ran by other settings than the server's (%s): it is started anew", self.name, names)
+        await self._end_process()
+        await self._detach()
+        self.adopted = False
+        await self._attach(await self._launcher.spawn(self.config))
 
     async def close(self, stop_rig: bool) -> None:
         """Let go of the rig process; with `stop_rig` end it: E-stop if it moves, then exit."""
@@ -140,16 +160,16 @@ class RigHost:
 
     def lane(self, command: Command, who: str) -> Coroutine[Any, Any, wire.Reply]:
         """E-stop or stop by its flag, now; the coroutine, which is to be awaited, only waits for the loop's answer."""
-        before = self._memory().snapshot()
         asked = self._flag(command, who)  # before anything else is looked at
-        return self._lane_done(command, asked, before)
+        return self._lane_done(command, asked, self._memory().snapshot(wait=False))
 
     # --- what it shows ---
 
     def snapshot(self) -> wire.Snapshot:
         """The session as of now; of a dead process its last words, disconnected, with nothing allowed."""
         published = self._published()
-        health = self._health(published)
+        alive = not self._dead and self._beat_age() < SILENT_S
+        health = health_of(self._memory(), published, pid=self._pid, alive=alive, rate_hz=self.rate_hz)
         newest = self.latest()
         pose = [0.0] * 4 if newest is None else [float(v) for v in newest["measured"][0]]
         left = published.lease.expires_s
@@ -183,6 +203,12 @@ class RigHost:
     def events(self, since: int) -> tuple[list[dict[str, Any]], int]:
         """What the rig process has noted (commands, transitions, alarms), and where to ask from next."""
         return self._memory().events_since(since)
+
+    @property
+    def rate_hz(self) -> float:
+        """Of the loop that runs, whatever the settings say by now; of the settings before the first has run."""
+        period_ns = 0 if self._shared is None else int(self._shared.header["period_ns"][0])
+        return 1e9 / period_ns if period_ns else self.config.rate_hz
 
     @property
     def revision(self) -> int:
@@ -222,7 +248,14 @@ class RigHost:
             shared = Shared(self._place.memory())
             await link.open(self._place)
             self._pidfd = os.pidfd_open(pid)
+            deadline = time.monotonic() + _PUBLISH_S
+            while shared.snapshot(wait=False) is None:  # ready, and about to say so
+                if time.monotonic() > deadline:
+                    raise SharedError("it publishes nothing")
+                await asyncio.sleep(0.005)
         except (OSError, SharedError, RigUnreachableError) as cause:
+            await self._detach()
+            await link.close()
             raise HostError(f"the rig process {pid} of {self.name} cannot be adopted ({cause})") from cause
         self._pid, self._shared, self._link, self._dead = pid, shared, link, False
         shared.header["server_pid"] = os.getpid()
@@ -259,11 +292,13 @@ class RigHost:
         code = self._launcher.status(self._pid)
         if code is not None:
             how = f" (signal {-code})" if code < 0 else f" (exit status {code})"
-        told = f"the rig process died{how} while {last.state}; the drive brakes by its own watchdog"
+        why = "".join(f" ({a.message})" for a in last.alarms if a.code == "internal_error")
+        told = f"the rig process died{how}{why} while {last.state}; the drive brakes by its own watchdog"
         await self._detach()
         last_revision = self.revision
-        pid = await self._launcher.spawn(replace(self.config, after_loss=told))
-        self._shared = None
+        pid = self._place.running()  # one that came up and could not be reached
+        if pid is None:
+            pid = await self._launcher.spawn(replace(self.config, after_loss=told))
         self._offset = last_revision + 1
         await self._attach(pid)
 
@@ -273,7 +308,7 @@ class RigHost:
             if self._dead:
                 try:
                     await self._revive()
-                except HostError as cause:
+                except (HostError, OSError) as cause:
                     self._place.log.open("a").write(f"server: {cause}\n")
                     await asyncio.sleep(1.0)
                 continue
@@ -307,7 +342,7 @@ class RigHost:
 
     async def _lane_done(self, command: Command, asked: int, published: bytes | None) -> wire.Reply:
         header = self._memory().header
-        before = State.DISCONNECTED.value if self._dead or published is None else wire.decode_published(published).state
+        before = self._state() if published is None or self._dead else wire.decode_published(published).state
         deadline = time.monotonic() + REPLY_S
         while int(header[f"{command}_done_ns"][0]) < asked:
             if self._dead or time.monotonic() > deadline:
@@ -357,43 +392,14 @@ class RigHost:
 
     def _published(self) -> wire.Published:
         data = self._memory().snapshot()
-        if data is None:
+        if data is not None:
+            self._last = wire.decode_published(data)
+        if self._last is None:
             raise HostError(f"the rig process of {self.name} has published nothing")
-        return wire.decode_published(data)
+        return self._last  # of a process that was killed while it published, what it had said before
 
     def _state(self) -> str:
         return State.DISCONNECTED.value if self._dead else self._published().state
 
     def _beat_age(self) -> float:
-        return (time.monotonic_ns() - int(self._memory().header["rig_beat_ns"][0])) / 1e9
-
-    def _health(self, published: wire.Published) -> wire.Health:
-        memory = self._memory()
-        header = memory.header
-        recorder_age = (time.monotonic_ns() - int(header["recorder_beat_ns"][0])) / 1e9
-        return wire.Health(
-            realtime=published.realtime,
-            rate_hz=self.rate_hz,
-            lateness_us=memory.lateness_us(),
-            busy_us=int(header["busy_ns"][0]) / 1000.0,
-            ticks=int(header["ticks"][0]),
-            deadline_misses=int(header["misses"][0]),
-            rig_alive=not self._dead and self._beat_age() < SILENT_S,
-            rig_pid=self._pid,
-            heartbeat_age_s=self._beat_age(),
-            recorder=wire.RecorderHealth(
-                alive=recorder_age < 1.0,
-                run=_text(header["recorder_run"][0]),
-                lost=int(header["recorder_lost"][0]),
-                lag=max(0, int(header["head"][0]) - int(header["recorder_seq"][0])),
-                bytes_written=int(header["recorder_bytes"][0]),
-                chunks=int(header["recorder_chunks"][0]),
-                free_bytes=int(header["recorder_free_bytes"][0]),
-                error=_text(header["recorder_error"][0]),
-            ),
-            live=published.live,
-        )
-
-
-def _text(value: np.bytes_) -> str:
-    return bytes(value).decode("utf-8", "replace")
+        return beat_age_s(self._memory())

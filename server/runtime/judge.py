@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from server.drives.base import Status
+from server.drives.obedience import Obedience
+from server.runtime.config import Tolerance
 from server.runtime.guard import Finding
 from server.runtime.motion import Mode
 from server.session.alarms import Severity
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from server.runtime.loop import RigLoop
 
 _RECORDER_SILENT_S = 1.0
+_ORDER_S = 0.2  # for an order to reach the drive: the first move after arming is not far yet
 _WAY_LATE_S = 0.5  # ten times as long as between two ways
 
 
@@ -32,16 +35,20 @@ class Judge:
         self._warned: set[tuple[str, str | None]] = set()
         self._misses: list[float] = []
         self._server_silence = Silence(loop.config.server)
+        self._obedience = Obedience(round(_ORDER_S * loop.config.rate_hz))
 
     def forget(self) -> None:
         """Warn anew of what was warned of before: after a reset or unload."""
         self._warned.clear()
+        self._obedience.forget()
 
     def drive(self) -> None:
-        """The drive's own status."""
+        """The drive's own status, and whether it does what it was told."""
         loop = self._loop
         status = loop.status
         now = time.monotonic()
+        asked = loop.enabled and not loop.drive_brakes
+        disobeys = self._obedience.ends(asked, loop.machine.moving, status)
         if status & Status.LINK_LOST:
             loop.enabled = loop.drive_brakes = False
             loop.alarm("link_lost", Severity.FAULT, f"drive {loop.drive.name}: link lost; the drive brakes by itself")
@@ -60,6 +67,13 @@ class Judge:
             }[word]
             loop.let_drive_brake(now)
             self.trip(Finding(f"drive_{word}", True, told, frame, math.nan, math.nan, ""))
+        elif disobeys and asked:
+            loop.let_drive_brake(now)
+            why = "the order to enable was not confirmed" if status & Status.UNCONFIRMED else "it took the order"
+            self.trip(_said("drive_not_enabled", f"drive {loop.drive.name} does not follow commands: {why}"))
+        elif disobeys:
+            why = "it still follows commands" if status & Status.ENABLED else "the order was not confirmed"
+            self.trip(_said("drive_not_disabled", f"drive {loop.drive.name} was told to brake or power off: {why}"))
         elif loop.enabled and status & Status.STALE_WRITE:
             self.warn(Finding("stale_write", False, "the drive refused an old command", None, math.nan, math.nan, ""))
 
@@ -69,32 +83,33 @@ class Judge:
         motion = loop.motion
         if not loop.enabled or loop.drive_brakes:
             return math.nan
-        error, found = loop.guard.measured(loop.measured, motion.x1, motion.q1)
-        if found is not None and found.code == "attitude_error" and motion.mode is Mode.LIVE:
-            if not loop.live.acquired:
-                found = None  # still on the way from where the rig stood to where the source is
-            elif loop.live.limited:
-                # The source asks for more than the limits allow, or has jumped after a gap: the rig does as it should,
-                # and is on its way to regain the attitude. Said, but no reason to stop.
-                found = replace(found, trips=False)
-        if found is not None:
+        error, findings = loop.guard.measured(loop.measured, motion.x1, motion.q1)
+        for found in findings:
+            if found.code == "attitude_error" and motion.mode is Mode.LIVE:
+                if not loop.live.acquired:
+                    continue  # still on the way from where the rig stood to where the source is
+                if loop.live.limited:
+                    # The source asks for more than the limits allow, or has jumped after a gap: the rig does as it
+                    # should, and is on its way to regain the attitude. Said, but no reason to stop.
+                    self.warn(replace(found, trips=False))
+                    continue
             if found.trips and found.code == "following_error":
                 loop.let_drive_brake(now)
             self.weigh(found)
         return error
 
     def lateness(self, now: float, lateness_ns: int, missed: int) -> None:
-        """Deadlines missed: what the drive did not hear in time."""
+        """Ticks that were late, and deadlines that were missed: what the drive did not hear in time."""
         loop = self._loop
+        moving = loop.enabled and loop.machine.moving
+        if moving:
+            self._weigh_scalar("lateness", lateness_ns / 1e6, loop.config.guard.lateness_ms, "ms")
         if missed:
             loop.shared.header["misses"] += missed
             self._misses = [t for t in self._misses if now - t < 1.0] + [now] * min(missed, 5000)
-            if loop.enabled and loop.machine.moving:
-                found = loop.guard.scalar("lateness", lateness_ns / 1e6, loop.config.guard.lateness_ms, "ms")
+            if moving:
                 count = float(len(self._misses))
-                found = found or loop.guard.scalar("missed_deadlines", count, loop.config.guard.misses_per_s, "in 1 s")
-                if found is not None:
-                    self.weigh(found)
+                self._weigh_scalar("missed_deadlines", count, loop.config.guard.misses_per_s, "in 1 s")
 
     def recorder(self, now: float) -> None:
         """A run goes on without its record, but not unsaid."""
@@ -116,22 +131,23 @@ class Judge:
         """The live source's samples, and their age."""
         loop = self._loop
         live = loop.live
-        found = loop.guard.scalar("live_source_stale", live.last_age_ms, loop.config.guard.stale_ms, "ms")
-        if found is not None and live.heard:
-            self.weigh(found)
+        if live.heard:
+            self._weigh_scalar("live_source_stale", live.last_age_ms, loop.config.guard.stale_ms, "ms")
         if live.way_age_s > _WAY_LATE_S:
             text = f"no way ahead from the planner for {live.way_age_s:.1f} s: the step goes on without its foresight"
             age = live.way_age_s * 1e3
             self.warn(Finding("preview_late", False, text, None, age, _WAY_LATE_S * 1e3, "ms"))
         counts = live.counts
-        for word, told in (
-            ("bad", "are none"),
-            ("dropped", "came late or twice"),
-            ("clock_steps", "begin a new clock"),
+        for word, text in (
+            ("bad", "samples of the live source are none: not used"),
+            ("dropped", "samples of the live source came late or twice: not used"),
+            ("clock_steps", "the live source began anew, or its clock was set"),
         ):
             if counts[word]:
-                text = f"samples of the live source {told}: not used"
                 self.warn(Finding(f"live_{word}", False, text, None, math.nan, math.nan, ""))
+        if live.strangers:
+            text = "samples of a second live source, beside the one that is followed: not used"
+            self.warn(Finding("live_second_source", False, text, None, math.nan, math.nan, ""))
 
     def silences(self, now: float) -> None:
         """Who holds the lease, and the server: a silent one means hold, then stop, then disarm."""
@@ -151,6 +167,11 @@ class Judge:
         loop.report(event)
         if loop.machine.state is not before:
             loop.alarm(code, Severity.WARNING, f"{told}: {before} -> {loop.machine.state}")
+
+    def _weigh_scalar(self, code: str, value: float, tolerance: Tolerance, unit: str) -> None:
+        found = self._loop.guard.scalar(code, value, tolerance, unit)
+        if found is not None:
+            self.weigh(found)
 
     def weigh(self, found: Finding) -> None:
         """A finding of the guard: brake, or warn."""
@@ -175,3 +196,7 @@ class Judge:
         limit = found.limit if math.isfinite(found.limit) else None
         unit = found.unit or None
         self._loop.alarm(found.code, severity, found.message, frame=found.frame, value=value, limit=limit, unit=unit)
+
+
+def _said(code: str, message: str) -> Finding:
+    return Finding(code, True, message, None, math.nan, math.nan, "")

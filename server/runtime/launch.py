@@ -5,6 +5,7 @@ while its process runs takes that for a leak.
 """
 
 import asyncio
+import json
 import os
 import signal
 import sys
@@ -51,6 +52,16 @@ class Launcher:
         os.kill(child, signal.SIGKILL)
         await self.reaped(child)
         raise HostError(f"the rig process of {config.name} was not ready within {START_S:g} s:\n{self._log_end()}")
+
+    def differences(self, config: RigConfig) -> list[str]:
+        """The settings in which the process that was started here last is not as `config` has it."""
+        wanted = json.loads(configs.encode(config))
+        try:
+            given = json.loads(self._place.config.read_bytes())
+        except (OSError, ValueError):
+            given = {}
+        names = (wanted.keys() | given.keys()) - {"after_loss"}
+        return sorted(name for name in names if wanted.get(name) != given.get(name))
 
     def status(self, pid: int) -> int | None:
         """How process `pid` ended (negative: by that signal); None while it lives, or where it is not ours to know."""

@@ -8,6 +8,12 @@ from server.runtime import wire
 from server.runtime.place import Place, control_socket
 from server.session.lease import LeaseToken
 
+MAX_REQUEST = 1 << 16  # [bytes] what the rig process reads of a packet; of a longer one it would see a part
+
+
+class RequestTooLargeError(ValueError):
+    """A request that the rig process would not read whole: its size and the most that is read are in the message."""
+
 
 class RigUnreachableError(Exception):
     """The rig process does not answer: gone, or stuck. The message says which."""
@@ -47,11 +53,18 @@ class ControlLink:
         action: str = "",
         to: str | None = None,
     ) -> wire.Answer:
-        """Send one request and wait for its answer. Raises `RigUnreachableError`; TypeError on args not JSON."""
+        """Send one request and wait for its answer.
+
+        Raises `RigUnreachableError`; TypeError on args not JSON and `RequestTooLargeError`, before anything is sent.
+        """
         if not self.open_for_requests:
             raise RigUnreachableError("the rig process has closed the connection")
         number = next(self._numbers)
         packet = wire.encode(wire.Request(number, op, who, command, args or {}, lease, action, to))
+        if len(packet) > MAX_REQUEST:
+            raise RequestTooLargeError(
+                f"{command or action or op}: {len(packet)} bytes, expected at most {MAX_REQUEST}"
+            )
         waiting: asyncio.Future[wire.Answer] = asyncio.get_running_loop().create_future()
         self._waiting[number] = waiting
         try:

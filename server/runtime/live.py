@@ -33,6 +33,7 @@ from solver.rig import Rig
 Array = NDArray[np.float64]
 _PER_TICK = 16
 _RATE_OVER_S = 1.0
+_SOURCE_SILENT_S = 0.5  # then another may be followed in its place
 _DEG = 180.0 / math.pi
 
 
@@ -55,6 +56,9 @@ class LiveSource:
         self.stale = self.limited = False
         self.acquired = False  # the source's attitude was reached once
         self.bad = 0
+        self.strangers = 0  # samples of another source than the one that is followed
+        self._source: tuple[int, Any] | None = None  # socket and sender that is followed
+        self._source_at = 0.0  # [s] when it was heard
         self.last_age_ms = 0.0
         self.rate_hz = 0.0
         self._rated = (0.0, 0)  # when, and samples by then
@@ -103,6 +107,8 @@ class LiveSource:
         self._following = True
         self.acquired = False
         self.stale = self.limited = False
+        self._source = None
+        self.strangers = 0
 
     def end(self) -> None:
         """The session is no longer live."""
@@ -125,8 +131,19 @@ class LiveSource:
                 if sample is None:
                     self.bad += 1
                     continue
-                used = self._following and self._take(sample, now)
+                used = self._following and self._is_followed(each, sender, now) and self._take(sample, now)
                 self._waiting.append((sample, used, time.monotonic(), each, sender))
+
+    def _is_followed(self, via: socket.socket, sender: Any, now: float) -> bool:
+        """One source a rig: the first to be heard, until it has been silent for a while."""
+        source = (via.fileno(), sender)
+        if source != self._source:
+            if self._source is not None and now - self._source_at < _SOURCE_SILENT_S:
+                self.strangers += 1
+                return False
+            self._source = source
+        self._source_at = now
+        return True
 
     def _take(self, sample: LiveSample, now: float) -> bool:
         assert self._step is not None

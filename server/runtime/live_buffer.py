@@ -1,5 +1,8 @@
 """The live source's samples on the rig's clock: sorted, interpolated across jitter, extrapolated over short gaps.
 
+A sample that is late, doubled, or off the source's clock is not used. Several such in a row that agree on a clock of
+their own, with none of the old one between, are a source that began anew: then so does the buffer.
+
 The source's clock is its own. The offset to ours is the smallest seen between arrival and time stamp (the quickest
 datagram is the least delayed one), let up slowly so that drifting clocks are followed. A sample stands for its time
 stamp plus that offset; the attitude flown is the one `delay` ago, so that jitter up to the delay is interpolated.
@@ -17,7 +20,10 @@ Array = NDArray[np.float64]
 _KEPT = 64  # samples, beside those that are known ahead
 _FASTEST_HZ = 1000.0  # of a source
 _DRIFT = 2e-4  # [s/s] of the offset, upward: more than two quartz clocks differ
-_STEP_S = 0.5  # a clock that jumps farther is a new clock
+_STEP_S = 0.5  # of its clock: a sample farther off is none of it
+# What makes a new clock of samples that are not used: so many, over so long, offsets so close. Old samples that come
+# all at once are many too, but do not come as fast as their times go.
+_ANEW_SAMPLES, _ANEW_S, _ANEW_SPREAD_S = 3, 0.015, 0.02
 
 
 @kernel
@@ -97,20 +103,23 @@ class LiveBuffer:
         self._offset = math.inf
         self._offset_at = 0.0
         self._sequence = -1
+        self._anew: list[tuple[float, float, int]] = []  # (arrival, time, sequence) of unused samples that agree
         self.accepted = self.dropped = self.steps = 0
 
     def add(self, sample: LiveSample, now: float) -> bool:
-        """Take a sample that arrived at `now`; False where it is out of order or sent twice."""
+        """Take a sample that arrived at `now`; False where it is late, sent twice, or off the source's clock."""
         offset = now - sample.time_s
-        if self._end and abs(offset - self._offset) > _STEP_S:
-            # The source began anew, or its clock was set: so do we, without believing the gap between.
-            steps = self.steps + 1
-            accepted, dropped = self.accepted, self.dropped
-            self.reset()
-            self.steps, self.accepted, self.dropped = steps, accepted, dropped
-        elif self._end and (sample.time_s <= self._time[self._end - 1] or sample.sequence <= self._sequence):
-            self.dropped += 1
-            return False
+        if self._end:
+            later = sample.time_s > self._time[self._end - 1] and sample.sequence > self._sequence
+            if not later or abs(offset - self._offset) > _STEP_S:
+                if not self._is_anew(sample, now):
+                    self.dropped += 1
+                    return False
+                # Without believing the gap between.
+                kept = self.steps + 1, self.accepted, self.dropped
+                self.reset()
+                self.steps, self.accepted, self.dropped = kept
+        self._anew.clear()
         drifted = self._offset + _DRIFT * (now - self._offset_at)
         self._offset, self._offset_at = min(offset, drifted), now
         self._sequence = sample.sequence
@@ -132,6 +141,19 @@ class LiveBuffer:
         self._end += 1
         self.accepted += 1
         return True
+
+    def _is_anew(self, sample: LiveSample, now: float) -> bool:
+        """Whether this unused sample and those right before it are a source that began anew."""
+        row = self._anew
+        if row:
+            began, first, _ = row[0]
+            _, last, sequence = row[-1]
+            agrees = abs((now - sample.time_s) - (began - first)) <= _ANEW_SPREAD_S
+            if not agrees or sample.time_s <= last or sample.sequence <= sequence:
+                row.clear()
+        row.append((now, sample.time_s, sample.sequence))
+        del row[1:-2]  # the first and the newest tell it all
+        return len(row) >= _ANEW_SAMPLES and now - row[0][0] >= _ANEW_S
 
     def age(self, now: float) -> float:
         """How far the flown instant lies beyond the newest sample [s]; negative while it can be interpolated."""

@@ -13,6 +13,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from server.drives.base import Drive
 from server.plan_folder import rig_hash
@@ -30,9 +31,12 @@ from server.runtime.shared import Shared
 from server.session.alarms import Severity
 from server.session.machine import SessionMachine
 from server.session.states import IN_MOTION, Action, Command, Event, State
+from solver.rig import FRAMES
 
+Array = NDArray[np.float64]
 _RAD = math.pi / 180.0
 _AT_REST = 0.5 * _RAD  # [rad/s] a table slower than this that brakes by itself counts as stopped
+_NOISE = 0.01 * _RAD  # [rad] beyond a limit that an encoder may read at rest on it
 _BRAKE_TIMEOUT_S = 5.0
 _COLLECT_S = 10.0
 
@@ -93,13 +97,23 @@ class RigLoop:
     def run(self) -> None:
         """Tick until told to end, or nobody needs this process any more."""
         self.panel.publish()
-        while not self.ending:
-            now_ns, lateness_ns, missed = self.deadlines.wait()
-            self.tick(now_ns, lateness_ns, missed)
+        try:
+            while not self.ending:
+                now_ns, lateness_ns, missed = self.deadlines.wait()
+                self.tick(now_ns, lateness_ns, missed)
+        except BaseException as cause:
+            self._fail(cause)
+            raise
         self._control.close()
         self.live.close()
         self.drive.disable()
         self.drive.close()
+
+    def _fail(self, cause: BaseException) -> None:
+        """A fault of ours: nothing is commanded any more, so the drive brakes by itself, and the last words say why."""
+        self.drive.brake()
+        self.alarm("internal_error", Severity.FAULT, f"{type(cause).__name__}: {cause}")
+        self.panel.publish()
 
     def terminate(self) -> None:
         """On SIGTERM: E-stop where the rig moves; end when it is at rest."""
@@ -175,13 +189,27 @@ class RigLoop:
             self.note("run_end", run_id=self.run_id, head=self.shared.ring.head, state=self.machine.state)
             self.run_id = None
 
+    def stand(self, measured: Array) -> None:
+        """Stand where the table is found, (4,) [rad]; a frame that lies outside its range by noise, on its limit."""
+        pose = np.clip(measured, self.rig.position_min, self.rig.position_max)
+        outside = np.abs(measured - pose)
+        self.motion.rest_at(np.where(outside <= _NOISE, pose, measured))
+        for i in np.flatnonzero(outside > _NOISE):
+            name, found, limit = FRAMES[i], math.degrees(measured[i]), math.degrees(pose[i])
+            text = f"{name} frame found at {found:.6g} deg, beyond its limit of {limit:.6g} deg: it may only come back"
+            self.judge.warn(Finding("outside_range", False, text, name, found, limit, "deg"))
+
     def begin_run(self, who: str) -> None:
         """A flight begins: the recorder opens a file."""
+        self.run_id = self._open_record("run_begin", self.config.name, who=who)
+
+    def _open_record(self, kind: str, name: str, **content: Any) -> str:
         stamp = time.strftime("%Y%m%dT%H%M%S", time.gmtime())
-        self.run_id = f"{stamp}-{self.config.name}-{time.time_ns() // 1000 % 1000000:06d}"
+        run_id = f"{stamp}-{name}-{time.time_ns() // 1000 % 1000000:06d}"
         bound = self.machine.binding
         plan = {} if bound is None else asdict(bound)
-        self.note("run_begin", run_id=self.run_id, who=who, head=self.shared.ring.head, plan=plan)
+        self.note(kind, run_id=run_id, rig=self.config.name, head=self.shared.ring.head, plan=plan, **content)
+        return run_id
 
     def estop_alarm(self, who: str) -> None:
         """The alarm of an E-stop."""
@@ -264,7 +292,9 @@ class RigLoop:
             self.judge.trip(found)
             if motion.tick() is Event.AT_REST:
                 event = Event.AT_REST
-            self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)
+            if self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a) is not None:
+                self.let_drive_brake(now)  # not even braking is sound: nothing of ours is written
+                return
         self._sequence += 1
         self.drive.write(motion.x, motion.v, motion.a, self.machine.epoch, self._sequence)
         motion.commit()
@@ -282,6 +312,10 @@ class RigLoop:
         """Raise an alarm and note it."""
         raised = self.machine.alarm(code, severity, message, time.time(), **evidence)
         if raised.count == 1:
+            if severity is not Severity.WARNING and self.run_id is None and self.ticks:
+                # No run is recorded: the recorder keeps what led here (from the first tick on), and on until rest.
+                who = self.machine.lease(time.monotonic()).holder or ""
+                self._open_record("incident", f"{self.config.name}-incident", who=who, code=code)
             self.note("alarm", **asdict(raised))
 
     def note(self, kind: str, **content: Any) -> None:

@@ -99,6 +99,15 @@ def check_record(runs: Path, min_free_mb: float, recorder_silent_s: float) -> No
         raise OrderError("disk_full", f"{free:.0f} MB free in {runs}: arming needs {min_free_mb:.0f} MB for the record")
 
 
+def check_inside(rig: Rig, motion: Motion) -> None:
+    """Raise `OrderError` where a frame stands outside its range: a step method begins inside."""
+    for name, value, low, high in zip(FRAMES, motion.x1, rig.position_min, rig.position_max, strict=True):
+        if not low <= value <= high:
+            low_deg, high_deg, deg = (math.degrees(v) for v in (low, high, value))
+            text = f"{name} stands at {deg:.6g} deg, outside {low_deg:.6g} to {high_deg:.6g} deg: move it inside first"
+            raise OrderError("outside_limits", text)
+
+
 def move_of(command: Command, args: dict[str, Any], rig: Rig, motion: Motion) -> PointMove:
     """The move that move, home, jog or start asks for. Raises `OrderError`."""
     try:
@@ -111,7 +120,9 @@ def move_of(command: Command, args: dict[str, Any], rig: Rig, motion: Motion) ->
 
 def _target(command: Command, args: dict[str, Any], rig: Rig, motion: Motion) -> np.ndarray[Any, np.dtype[np.float64]]:
     if command is Command.HOME:
-        return np.array(rig.home)
+        # The nearest turn of a frame that turns without end: home is a pose, not a count of turns.
+        turns = np.where(np.isinf(rig.position_max), np.round((motion.x1 - rig.home) / math.tau), 0.0)
+        return np.asarray(rig.home + turns * math.tau)
     if command is Command.MOVE:
         return np.asarray(np.radians(_four(args, "target_deg")))
     if "frame" in args:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from ruckig import InputParameter, Result, Ruckig, Synchronization, Trajectory
+from ruckig import InputParameter, Result, Ruckig, RuckigError, Synchronization, Trajectory
 
 from server.runtime.config import MotionConfig
 from solver.rig import FRAMES, Rig
@@ -25,12 +25,15 @@ class MoveError(Exception):
 class PointMove:
     """One move from `start` to `target`, both at rest. (4,) [rad]
 
-    Raises `MoveError` where the target is not finite or outside a frame's range.
+    Raises `MoveError` where the target is not finite, outside a frame's range (a frame that begins outside may stay or
+    come nearer), or too far for the rates. (Ruckig's profiles end at about two hours.)
     """
 
     def __init__(self, rig: Rig, config: MotionConfig, start: Array, target: Array) -> None:
-        for name, value, low, high in zip(FRAMES, target, rig.position_min, rig.position_max, strict=True):
-            if not low - 1e-9 <= value <= high + 1e-9:
+        for name, value, low, high, begin in zip(
+            FRAMES, target, rig.position_min, rig.position_max, start, strict=True
+        ):
+            if not min(low, begin) - 1e-9 <= value <= max(high, begin) + 1e-9:
                 low_deg, high_deg, deg = (math.degrees(v) for v in (low, high, value))
                 raise MoveError(f"{name}: {deg:.6g} deg is outside {low_deg:.6g} to {high_deg:.6g} deg", name)
         if not np.isfinite(target).all():
@@ -46,9 +49,16 @@ class PointMove:
         plan.max_jerk = [math.radians(config.move_jerk_deg_s3)] * 4
         plan.synchronization = Synchronization.Time
         self._path = Trajectory(4)
-        result = Ruckig(4).calculate(plan, self._path)
-        if result not in (Result.Working, Result.Finished):
-            raise MoveError(f"no move from {np.degrees(start)} to {np.degrees(target)} deg: {result}")
+        try:
+            possible = Ruckig(4).calculate(plan, self._path) in (Result.Working, Result.Finished)
+        except (ValueError, RuckigError):  # its results for what is too long have no name in Python
+            possible = False
+        if not possible:
+            seconds = np.abs(target - start) / np.array(plan.max_velocity)
+            slow = int(np.argmax(seconds))
+            far, fast = math.degrees(target[slow] - start[slow]), math.degrees(plan.max_velocity[slow])
+            text = f"{FRAMES[slow]}: {far:.6g} deg at {fast:.4g} deg/s take {seconds[slow]:.4g} s"
+            raise MoveError(f"no move can be made of this, about two hours is the most: {text}", FRAMES[slow])
         self._target = np.array(target, float)
         self.duration_s = float(self._path.duration)
         self._time = 0.0

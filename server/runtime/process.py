@@ -51,7 +51,11 @@ def main() -> int:
     _wait_for(recorder, shared)
     loop: RigLoop | None = None
     try:
-        realtime = clock.go_realtime(settings.realtime_priority, settings.cpu)
+        try:
+            realtime = clock.go_realtime(settings.realtime_priority, settings.cpu)
+        except OSError as cause:
+            log.error("process.cpu = %s: %s; expected one of this machine's", settings.cpu, cause.strerror)
+            return 2
         loop = RigLoop(
             settings, drive, shared, place, realtime, lambda: start_recorder(memory, settings.runs), recorder
         )

@@ -37,7 +37,7 @@ EVENT_SCHEMA = {
     "type": "object",
     "properties": {
         **dict.fromkeys(
-            ("kind", "who", "command", "before", "after", "refused", "trigger", "run_id", "state"), _STRING
+            ("kind", "who", "command", "before", "after", "refused", "trigger", "run_id", "rig", "state"), _STRING
         ),
         **dict.fromkeys(("code", "severity", "message", "frame", "unit"), _STRING),
         **dict.fromkeys(("time_ns", "wall_ns", "epoch", "head", "number", "count", "pid"), _INTEGER),

@@ -116,11 +116,14 @@ class Shared:
         self._text["version"] = version + 2
         self.header["revision"] = revision
 
-    def snapshot(self) -> bytes | None:
-        """The newest snapshot; None before the first, or where the writer died inside `publish`."""
-        for attempt in range(64):
+    def snapshot(self, *, wait: bool = True) -> bytes | None:
+        """The newest snapshot; None before the first, or where the writer died inside `publish`.
+
+        It waits for a writer that was put aside in the middle of it, some milliseconds at most; or not at all.
+        """
+        for attempt in range(64 if wait else 16):
             if attempt >= 16:
-                time.sleep(2e-4)  # the writer was put aside in the middle of it
+                time.sleep(2e-4)
             before = int(self._text["version"][0])
             if before and before % 2 == 0:
                 start = _TEXT_AT + 16

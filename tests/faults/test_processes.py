@@ -20,6 +20,7 @@ from mcap.stream_reader import StreamReader
 from server.runtime.config import encode
 from server.runtime.host import RigHost
 from server.runtime.place import Place
+from server.runtime.replay import read_events
 from server.session.machine import SilencePolicy
 from tests.server.runtime.rigs import Operator, config_of, hosted, plan_of, written
 from tests.server.runtime.test_host import within_limits
@@ -92,6 +93,73 @@ def test_a_killed_rig_process_is_said_at_once_and_its_record_is_whole(tmp_path: 
         numbers = messages(record)
         assert (np.diff(numbers) == 1).all()
         assert last - numbers[-1] <= 200
+
+    asyncio.run(fly())
+
+
+def test_a_process_killed_while_it_published_keeps_its_last_words(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        async with hosted(config) as (host, operator):
+            await operator.arm(written(tmp_path / "plan", plan_of(config.rig, 1.0)))
+            assert host.snapshot().state == "armed"
+            pid = host.snapshot().health.rig_pid
+            shared = host._shared
+            assert shared is not None
+            os.kill(pid, signal.SIGSTOP)
+            shared._text["version"] += 1  # as it is in the middle of it
+            os.kill(pid, signal.SIGKILL)
+            deadline = time.monotonic() + 60.0
+            while (told := host.snapshot()).health.rig_pid == pid or not told.health.rig_alive:
+                assert told.plan is not None or told.health.rig_pid != pid
+                assert time.monotonic() < deadline
+                await asyncio.sleep(0.01)
+            (alarm,) = told.alarms
+            assert alarm.code == "rig_process_lost"
+            assert "while armed" in alarm.message
+
+    asyncio.run(fly())
+
+
+# In the rig's process, once the file is there, the next tick fails with an error of ours.
+BROKEN = """
+import os, sys, time
+_time_ns = time.time_ns
+def _broken():
+    fault = os.environ["BROKEN_TICK"]
+    if "server.runtime.process" in " ".join(sys.orig_argv) and os.path.exists(fault):
+        time.time_ns = _time_ns
+        raise ZeroDivisionError("a fault of ours")
+    return _time_ns()
+time.time_ns = _broken
+"""
+
+
+def test_an_error_in_a_tick_brakes_and_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "sitecustomize.py").write_text(BROKEN)
+    fault = tmp_path / "fault"
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "site"))
+    monkeypatch.setenv("BROKEN_TICK", str(fault))
+
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        async with hosted(config) as (host, operator):
+            await operator.fly(written(tmp_path / "plan", plan_of(config.rig, 6.0)))
+            pid = host.snapshot().health.rig_pid
+            monkeypatch.delenv("PYTHONPATH")  # the next process is sound
+            fault.touch()
+            deadline = time.monotonic() + 60.0
+            while (told := host.snapshot()).health.rig_pid == pid or not told.health.rig_alive:
+                assert time.monotonic() < deadline
+                await asyncio.sleep(0.01)
+            (alarm,) = told.alarms
+            assert alarm.code == "rig_process_lost"
+            assert "exit status 1" in alarm.message
+            assert "ZeroDivisionError: a fault of ours" in alarm.message
+            assert "running" in alarm.message
+        (record,) = (tmp_path / "runs").iterdir()
+        assert "internal_error" in [e.get("code") for e in read_events(record)]
 
     asyncio.run(fly())
 

@@ -13,6 +13,7 @@ from tests.server.runtime.rigs import plan_of
 DT = 1e-3
 RIG = builtin_rigs()["vertical-limited"]
 ZERO = np.zeros(4)
+LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def command(x: list[float], x1: list[float], v1: list[float], rig: Rig = RIG, **config: float) -> object:
@@ -99,26 +100,45 @@ def test_a_sound_plan_never_trips_and_leaves_a_margin() -> None:
 
 def test_following_and_attitude_have_two_levels() -> None:
     guard = Guard(RIG, GuardConfig(following_deg=Tolerance(1.0, 3.0), attitude_deg=Tolerance(None, 0.5)), DT)
-    level = np.array([1.0, 0.0, 0.0, 0.0])
     nothing = np.full(4, math.nan)
-    assert guard.measured(np.radians([0, 0, 0.9, 0]), ZERO, nothing)[1] is None
-    _, warned = guard.measured(np.radians([0, 0, -2.0, 0]), ZERO, nothing)
-    assert warned is not None
+    assert guard.measured(np.radians([0, 0, 0.9, 0]), ZERO, nothing)[1] == []
+    _, (warned,) = guard.measured(np.radians([0, 0, -2.0, 0]), ZERO, nothing)
     assert (warned.code, warned.frame, warned.trips) == ("following_error", "middle", False)
-    _, tripped = guard.measured(np.radians([0, 0, 0, 3.1]), ZERO, nothing)
-    assert tripped is not None
+    _, (tripped,) = guard.measured(np.radians([0, 0, 0, 3.1]), ZERO, nothing)
     assert (tripped.frame, tripped.trips, tripped.limit) == ("inner", True, 3.0)
-    error, off = guard.measured(np.radians([0, 0.6, 0, 0]), ZERO, level)
+    error, (off,) = guard.measured(np.radians([0, 0.6, 0, 0]), ZERO, LEVEL)
     assert math.degrees(error) == pytest.approx(0.6)
-    assert off is not None
     assert (off.code, off.trips) == ("attitude_error", True)
 
 
-def test_a_measurement_that_is_no_number_trips() -> None:
-    guard = Guard(RIG, GuardConfig(), DT)
-    _, found = guard.measured(np.array([0.0, math.nan, 0.1, 0.0]), ZERO, ZERO)
-    assert found is not None
+@pytest.mark.parametrize("following", [Tolerance(1.0, 3.0), Tolerance(0.0, None), Tolerance(None, None)])
+def test_a_warning_of_one_thing_hides_no_trip_of_another(following: Tolerance) -> None:
+    guard = Guard(RIG, GuardConfig(following_deg=following, attitude_deg=Tolerance(1.0, 5.0)), DT)
+    _, found = guard.measured(np.radians([2.9, 2.0, 2.9, 0]), ZERO, LEVEL)  # none beyond 3 deg, together beyond 5
+    assert [f.trips for f in found if f.code == "attitude_error"] == [True]
+
+
+@pytest.mark.parametrize("following", [Tolerance(1.0, 3.0), Tolerance(None, None)])
+def test_a_measurement_that_is_no_number_trips(following: Tolerance) -> None:
+    guard = Guard(RIG, GuardConfig(following_deg=following), DT)
+    _, (found,) = guard.measured(np.array([0.0, math.nan, 0.1, 0.0]), ZERO, ZERO)
     assert (found.trips, found.frame) == (True, "outer")
+
+
+@pytest.mark.parametrize(
+    ("x", "x1", "v1", "code"),
+    [
+        (61.0, 61.0, 0.0, None),  # it stands where it was found
+        (60.9999, 61.0, 0.0, None),  # and comes back
+        (61.0001, 61.0, 0.0, "guard_position"),
+        (-60.9999, -61.0, 0.0, None),
+        (-61.0001, -61.0, 0.0, "guard_position"),
+        (60.0 + 1e-6, 60.0, 0.0, "guard_position"),  # from inside, no farther than its limit
+    ],
+)
+def test_a_frame_found_outside_its_range_may_only_come_back(x: float, x1: float, v1: float, code: str | None) -> None:
+    found = command([0, 0, 0, x], [0, 0, 0, x1], [0, 0, 0, v1])
+    assert getattr(found, "code", None) == code
 
 
 def test_zero_is_a_level_and_none_is_off() -> None:

@@ -199,3 +199,109 @@ def test_a_link_that_the_process_drops_is_opened_anew(tmp_path: Path) -> None:
             assert host.snapshot().state == "idle"
 
     asyncio.run(fly())
+
+
+async def at_rest(host: RigHost, operator: Operator) -> None:
+    """Wait until the session takes commands of an armed rig again."""
+    snapshot = await operator.until("armed", "faulted")
+    assert snapshot.state == "armed", snapshot.alarms
+
+
+def test_a_rig_that_rests_on_a_limit_is_armed_again(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        async with hosted(config) as (host, operator):
+            await operator.arm(written(tmp_path / "plan", plan_of(config.rig, 0.5)))
+            for target in (60.0, -60.0):
+                await operator.must("move", target_deg=[0.0, 0.0, 0.0, target])
+                await at_rest(host, operator)
+                await operator.must("disarm")
+                await operator.must("arm")
+                await asyncio.sleep(0.2)
+                assert host.snapshot().state == "armed", host.snapshot().alarms
+
+    asyncio.run(fly())
+
+
+def test_a_frame_found_outside_its_range_is_told_and_may_come_back(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path, drive_options={"start_deg": [0.0, 0.0, 0.0, 61.0]})
+        async with hosted(config) as (host, operator):
+            await operator.arm(written(tmp_path / "plan", plan_of(config.rig, 0.5)))
+            await asyncio.sleep(0.2)
+            snapshot = host.snapshot()
+            assert snapshot.state == "armed", snapshot.alarms
+            (told,) = [a for a in snapshot.alarms if a.code == "outside_range"]
+            assert (told.frame, told.severity) == ("inner", "warning")
+            farther = await operator.say("jog", frame="inner", step_deg=0.5)
+            assert farther.error is not None
+            assert farther.error.code == "outside_limits"
+            await operator.must("jog", frame="base", step_deg=1.0)
+            await at_rest(host, operator)
+            await operator.must("home")
+            await at_rest(host, operator)
+            np.testing.assert_allclose(host.snapshot().pose_deg, 0.0, atol=0.01)
+            within_limits(host.samples(0, 1 << 20)[0], host)
+
+    asyncio.run(fly())
+
+
+def test_a_frame_outside_its_range_follows_no_live_source(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path, drive_options={"start_deg": [0.0, 0.0, 0.0, 61.0]})
+        async with hosted(config) as (host, operator):
+            await operator.arm_live()
+            refused = await operator.say("go_live")
+            assert refused.error is not None
+            assert refused.error.code == "outside_limits"
+            assert "inner stands at 61 deg" in refused.error.message
+            assert host.snapshot().state == "armed"
+
+    asyncio.run(fly())
+
+
+def test_a_move_that_would_take_hours_is_refused_and_the_rig_lives(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path)
+        async with hosted(config) as (host, operator):
+            await operator.arm(written(tmp_path / "plan", plan_of(config.rig, 0.5)))
+            pid = host.snapshot().health.rig_pid
+            refused = await operator.say("move", target_deg=[5e6, 0.0, 0.0, 0.0])
+            assert refused.error is not None
+            assert refused.error.code == "outside_limits"
+            assert "base" in refused.error.message
+            assert (host.snapshot().state, host.snapshot().health.rig_pid) == ("armed", pid)
+
+    asyncio.run(fly())
+
+
+def test_a_process_that_ran_by_other_settings_is_replaced_or_told_as_it_is(tmp_path: Path) -> None:
+    async def fly() -> None:
+        first = RigHost(config_of(tmp_path))
+        await first.start()
+        operator = Operator(first)
+        await operator.take()
+        pid = first.snapshot().health.rig_pid
+        await first.close(stop_rig=False)
+
+        other = RigHost(config_of(tmp_path, rate_hz=500.0))
+        await other.start()
+        assert not other.adopted
+        assert other.rate_hz == 500.0
+        assert other.snapshot().health.rig_pid != pid
+        again = Operator(other)
+        await again.arm(written(tmp_path / "plan", plan_of(other.rig, 0.5, rate_hz=500.0)))
+        pid = other.snapshot().health.rig_pid
+        await other.close(stop_rig=False)
+
+        last = RigHost(config_of(tmp_path))
+        await last.start()
+        try:
+            assert last.adopted
+            snapshot = last.snapshot()
+            assert (snapshot.state, snapshot.health.rig_pid) == ("armed", pid)
+            assert snapshot.health.rate_hz == 500.0  # what runs, not what the settings say by now
+        finally:
+            await last.close(stop_rig=True)
+
+    asyncio.run(fly())

@@ -1,6 +1,7 @@
 """A live source: datagrams, jitter, gaps, and a real rig process that follows one."""
 
 import asyncio
+import contextlib
 import math
 import socket
 import time
@@ -183,8 +184,34 @@ def test_out_of_order_doubled_and_restarted_samples() -> None:
     assert not buffer.add(LiveSample(4, 0.999, one, None), 100.001)
     assert not buffer.add(LiveSample(6, 0.9995, one, None), 100.001)
     assert buffer.dropped == 3
-    assert buffer.add(LiveSample(0, 5000.0, one, None), 100.01)  # the source's clock was set
+    # The source began anew with another clock: known as such once a few of its samples agree.
+    taken = [buffer.add(LiveSample(k, 5000.0 + 0.005 * k, one, None), 100.01 + 0.005 * k) for k in range(8)]
+    assert taken == [False] * 3 + [True] * 5
     assert buffer.steps == 1
+
+
+@pytest.mark.parametrize("age_s", [0.001, 0.3, 1.4, 600.0])
+@pytest.mark.parametrize("burst", [1, 100])
+def test_samples_that_come_again_late_are_not_flown(age_s: float, burst: int) -> None:
+    """Doubled on the way, one by one among the others, or all at once after a hold-up."""
+    buffer = LiveBuffer(0.0)
+    q = np.zeros(4)
+    late = 0
+    for k in range(4000):
+        now = 100.0 + k * 1e-3
+        a, b, c, d = flight(k * 1e-3)[0]
+        buffer.add(LiveSample(10_000 + k, k * 1e-3, (a, b, c, d), None), now)
+        if k % burst == 0 and k >= 2000:
+            for each in range(burst):
+                time_s = (k - (burst - 1 - each)) * 1e-3 - age_s
+                a, b, c, d = flight(time_s)[0]
+                old = LiveSample(10_000 + round(time_s * 1e3), time_s, (a, b, c, d), None)
+                late += not buffer.add(old, now + 1e-5)
+        buffer.at(now, q)
+        assert angle_deg(q, flight(k * 1e-3)[0]) < 0.05
+    assert buffer.steps == 0
+    assert buffer.dropped == late > 0
+    assert buffer.accepted == 4000
 
 
 def test_signs_of_quaternions_do_not_matter() -> None:
@@ -304,6 +331,45 @@ def test_nonsense_from_the_source_is_named_and_moves_nothing(tmp_path: Path) -> 
                 assert "live_bad" in [a.code for a in host.snapshot().alarms]
             await operator.until("armed")
             within_limits(host.samples(0, 1 << 20)[0], host)
+
+    asyncio.run(fly())
+
+
+def test_a_second_source_is_not_followed(tmp_path: Path) -> None:
+    async def fly() -> None:
+        config = config_of(tmp_path, guard=PATIENT, live=LiveConfig(extrapolate_ms=500.0, delay_ms=20.0))
+        async with hosted(config) as (host, operator):
+            await operator.arm_live()
+            with host.live_socket() as source, host.live_socket() as second:
+                await operator.must("go_live")
+                replies = await follow(host, 1.0, source)
+                over = asyncio.Event()
+
+                async def disturb() -> list[int]:
+                    found, begun, sequence = [], time.monotonic(), 0
+                    while not over.is_set():
+                        told = time.monotonic() - begun + 1000.0
+                        second.send(encode_sample(Kind.QUATERNION, sequence, told, (0.0, 1.0, 0.0, 0.0), ()))
+                        sequence += 1
+                        await asyncio.sleep(0.002)
+                        with contextlib.suppress(BlockingIOError):
+                            reply = decode_reply(second.recv(REPLY_SIZE))
+                            assert reply is not None
+                            found.append(reply.status & (LiveStatus.FOLLOWED | LiveStatus.DROPPED))
+                    return found
+
+                disturbing = asyncio.create_task(disturb())
+                replies = await follow(host, 2.0, source, begin=len(replies) + 10_000)
+                over.set()
+                answered = await disturbing
+                snapshot = host.snapshot()
+                assert snapshot.state == "live", snapshot.alarms
+                assert "live_second_source" in [a.code for a in snapshot.alarms]
+                assert set(answered) == {LiveStatus.DROPPED}
+                settled = [r for r in replies if r.status == LiveStatus.FOLLOWED][len(replies) // 2 :]
+                assert len(settled) > 100
+                assert max(r.lag_deg for r in settled) < 5.0
+            await operator.until("armed")
 
     asyncio.run(fly())
 

@@ -10,7 +10,7 @@ from server.runtime.guard import Guard
 from server.runtime.motion import Mode, Motion
 from server.runtime.point import MoveError
 from server.session.states import Event
-from solver.rig import Rig, builtin_rigs
+from solver.rig import FrameLimits, Rig, builtin_rigs
 from tests.server.runtime.rigs import plan_of
 
 RATE = 1000.0
@@ -108,6 +108,39 @@ def test_a_move_out_of_range_is_refused_with_the_frame() -> None:
         motion.plan_move(np.radians([0, 0, 0, 61.0]))
     with pytest.raises(MoveError):
         motion.plan_move(np.array([0.0, math.nan, 0.0, 0.0]))
+
+
+def test_a_frame_found_outside_its_range_may_stay_or_come_back() -> None:
+    motion, guard = rig_motion()
+    motion.rest_at(np.radians([0, 0, 0, 61.0]))
+    with pytest.raises(MoveError, match="inner"):
+        motion.plan_move(np.radians([0, 0, 0, 62.0]))
+    motion.plan_move(np.radians([5.0, 0, 0, 61.0]))
+    motion.go(motion.plan_move(np.zeros(4)), Event.THERE)
+    while step(motion, guard) is None:
+        pass
+    np.testing.assert_array_equal(motion.x1, np.zeros(4))
+
+
+def test_a_move_that_takes_too_long_is_refused_with_the_frame() -> None:
+    motion, _ = rig_motion()
+    with pytest.raises(MoveError, match=r"base: 500000 deg at 60 deg/s take 8333 s"):
+        motion.plan_move(np.radians([500000.0, 0, 0, 0]))
+    slow = Rig("slow", RIG.geometry, (FrameLimits(max_rate=math.radians(0.01)), *RIG.frames[1:]))
+    with pytest.raises(MoveError, match="base"):
+        rig_motion(slow)[0].plan_move(np.radians([90.0, 0, 0, 0]))
+
+
+def test_home_is_the_nearest_turn_of_a_frame_without_stops() -> None:
+    from server.runtime.orders import move_of
+    from server.session.states import Command
+
+    motion, guard = rig_motion()
+    motion.rest_at(np.radians([470010.0, -3605.0, 0.0, 30.0]))
+    motion.go(move_of(Command.HOME, {}, RIG, motion), Event.THERE)
+    while step(motion, guard) is None:
+        pass
+    np.testing.assert_allclose(np.degrees(motion.x1), [470160.0, -3600.0, 0.0, 0.0], atol=1e-9)
 
 
 def test_a_three_axis_rig_s_absent_base_cannot_be_moved() -> None:

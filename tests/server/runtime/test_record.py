@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from server.runtime.record import RunRecord
-from server.runtime.replay import read_events, read_samples, repair
+from server.runtime.replay import RecordError, is_whole, read_events, read_samples, repair, run_of
 from server.runtime.telemetry import SAMPLE, Samples
 from server.session.states import STATES
 from tests.build.test_hatch_build import hatch_build
@@ -161,3 +161,84 @@ def test_schemas_name_every_field_that_is_written(record: Path) -> None:
         for message in found["messages"]:
             if message["channel"] == channel["id"]:
                 assert set(message["content"]) - set(channel["schema"]["properties"]) <= but
+
+
+def chunk_starts(data: bytes) -> list[int]:
+    """Where each chunk's content begins."""
+    at, found = 8, []
+    while at + 9 < len(data):
+        if data[at] == 6:
+            found.append(at + 9)
+        at += 9 + int.from_bytes(data[at + 1 : at + 9], "little")
+    return found
+
+
+@pytest.mark.parametrize("tail", [b"", bytes(8192), b"\xff" * 8192, bytes(range(1, 256)) * 32])
+def test_what_a_power_cut_leaves_is_read_to_the_last_chunk(record: Path, tmp_path: Path, tail: bytes) -> None:
+    """The last blocks of the file may hold zeros, or what was on the disk before."""
+    data = record.read_bytes()
+    starts = chunk_starts(data)
+    path, whole = tmp_path / "cut.mcap", tmp_path / "whole.mcap"
+    for cut in (starts[6] - 4, starts[6] + 20, starts[6] + 60, (starts[6] + starts[7]) // 2):
+        path.write_bytes(data[:cut] + tail)
+        np.testing.assert_array_equal(read_samples(path)["seq"], np.arange(1, 601))
+        assert [event["kind"] for event in read_events(path)] == ["command"]
+        assert run_of(path)["run_id"] == "run"
+        assert not is_whole(path)
+        repair(path, whole)
+        assert is_whole(whole)
+        np.testing.assert_array_equal(read_samples(whole)["seq"], np.arange(1, 601))
+
+
+def test_a_flipped_byte_costs_its_chunk_and_no_wrong_sample_is_read(record: Path, tmp_path: Path) -> None:
+    data = record.read_bytes()
+    starts = chunk_starts(data)
+    assert is_whole(record)
+    path = tmp_path / "flipped.mcap"
+    sound = rows()
+    end = starts[4] + int.from_bytes(data[starts[4] - 8 : starts[4]], "little")
+    # What stands before the samples of the fifth chunk (checksum, codec, length), and some of its samples.
+    places = [*range(starts[4] + 24, starts[4] + 48), *range(starts[4] + 60, end, 997)]
+    for place in places:
+        damaged = bytearray(data)
+        damaged[place] ^= 0x55
+        path.write_bytes(damaged)
+        assert not is_whole(path), place
+        read = read_samples(path)
+        kept = np.r_[0:400, 500:1000]
+        for name in SAMPLE.names or ():
+            np.testing.assert_array_equal(read[name], sound[name][kept], err_msg=f"{name}, byte {place}")
+    repair(path, tmp_path / "whole.mcap")
+    assert is_whole(tmp_path / "whole.mcap")
+
+
+def test_a_length_that_is_damaged_ends_the_file_there(record: Path, tmp_path: Path) -> None:
+    data = bytearray(record.read_bytes())
+    at = chunk_starts(bytes(data))[4] - 8
+    path = tmp_path / "flipped.mcap"
+    for byte in range(8):
+        damaged = bytearray(data)
+        damaged[at + byte] ^= 0xA5
+        path.write_bytes(damaged)
+        assert not is_whole(path)
+        read = read_samples(path)["seq"].tolist()
+        assert read[:400] == list(range(1, 401))
+        assert read == sorted(set(read) & set(range(1, 1001)))
+
+
+def test_what_is_no_record_says_why(record: Path, tmp_path: Path) -> None:
+    path = tmp_path / "file.mcap"
+    data = record.read_bytes()
+    for content in (b"", b"not a record", bytes(100_000), data[:8]):
+        path.write_bytes(content)
+        assert not is_whole(path)
+        with pytest.raises(RecordError, match=r"file\.mcap: no"):
+            run_of(path)
+        with pytest.raises(RecordError, match=r"file\.mcap: not a record"):
+            read_samples(path)
+        with pytest.raises(RecordError):
+            repair(path, tmp_path / "whole.mcap")
+        assert not (tmp_path / "whole.mcap").exists()
+    path.write_bytes(data[: chunk_starts(data)[0] + 100])  # cut off in its first chunk
+    assert run_of(path)["who"] == "somebody"
+    assert len(read_samples(path)) == 0
