@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from server.runtime.replay import Replay, read_events, run_of
+from server.runtime.replay import RecordError, Replay, read_events, run_of
 from server.runtime.telemetry import Samples
 
 
@@ -25,7 +25,13 @@ class RunPlayback:
     def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
         """Read the whole record. Raises `RecordError`."""
         self.run = path.stem
-        self._meta = run_of(path)
+        meta = run_of(path)
+        self.who = meta.get("who", "")  # who began the run
+        try:
+            plan = json.loads(meta.get("plan") or "{}")
+        except ValueError as cause:
+            raise RecordError(path, f"its plan is damaged ({cause})") from cause
+        self.plan: dict[str, Any] = plan if isinstance(plan, dict) else {}  # that was bound, as the record has it
         self._replay = Replay(path)
         self._alarms = [event for event in read_events(path) if event.get("kind") == "alarm"]
         self._clock = clock
@@ -42,17 +48,6 @@ class RunPlayback:
         last = self._replay.latest()
         ticks = 0 if first is None or last is None else int(last["tick"][0]) - int(first["tick"][0])
         self.rate_hz = ticks / self.duration_s if self.duration_s else 0.0
-
-    @property
-    def plan(self) -> dict[str, Any]:
-        """The plan that was bound, as the record has it."""
-        plan = json.loads(self._meta.get("plan") or "{}")
-        return plan if isinstance(plan, dict) else {}
-
-    @property
-    def who(self) -> str:
-        """Who began the run."""
-        return self._meta.get("who", "")
 
     @property
     def position(self) -> tuple[float, bool, float]:

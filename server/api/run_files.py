@@ -1,6 +1,8 @@
 """Recorded runs as the outside sees them: a summary of each file, kept beside it, and tables for export."""
 
+import contextlib
 import json
+import shutil
 import time
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
@@ -13,7 +15,7 @@ import pyarrow as pa
 import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
 
-from server.runtime.replay import RecordError, is_whole, read_samples, run_of
+from server.runtime.replay import RecordError, is_whole, read_record, read_samples, repair, run_of
 from server.runtime.telemetry import LEAD, SAMPLE, Samples
 from server.session.states import STATES, State
 from server.store.errors import FileError, NotFoundError
@@ -37,15 +39,17 @@ class RunSummary:
 
     id: str
     rig: str
+    incident: str | None  # code of the alarm that had it kept while no run was recorded; None: a run
+    error: str | None  # why it cannot be read; then nothing but its name is known
     plan_id: str | None
     plan_hash: str | None
     who: str
     started: float | None  # seconds since 1970, of the first sample
     ended: float | None
     samples: int | None  # None, as all that follows from them, while they are being written
-    lost_samples: int | None  # sequence numbers that are missing
+    lost_samples: int | None  # sequence numbers that are missing, from the run's beginning to its end
     bytes: int
-    complete: bool  # False while it is written, or where the recorder was cut off
+    complete: bool  # False while it is written, where the recorder was cut off, or a part is damaged
     max_solve_error_deg: float | None
     max_tracking_error_deg: float | None
     max_lateness_us: float | None
@@ -58,13 +62,16 @@ class RunFiles:
         self.folder = folder
 
     def all(self, rig: str | None = None) -> list[RunSummary]:
-        """Newest first; files that are no records are left out."""
+        """Newest first; one that cannot be read says why. One that has only just begun may be left out."""
         found = []
         for path in sorted(self.folder.glob("*.mcap"), reverse=True):
-            try:
-                found.append(self._summary(path))
-            except RecordError:
-                continue
+            # One that is gone since we looked for it is no run any more.
+            with contextlib.suppress(FileNotFoundError):
+                try:
+                    found.append(self._summary(path))
+                except (RecordError, OSError) as error:
+                    if not _is_fresh(path):
+                        found.append(_unreadable(path, error))
         return [run for run in found if rig is None or run.rig == rig]
 
     def get(self, run: str) -> RunSummary:
@@ -72,7 +79,7 @@ class RunFiles:
         try:
             return self._summary(self.path(run))
         except RecordError as error:
-            raise FileError(f"{run}.mcap", f"a record ({error})") from None
+            raise FileError(f"{run}.mcap", f"a record ({error.why})") from None
 
     def path(self, run: str) -> Path:
         """The record's file. Raises `NotFoundError`."""
@@ -84,8 +91,7 @@ class RunFiles:
     def _summary(self, path: Path) -> RunSummary:
         """Of the file: read whole once, when nobody writes to it any more, and kept beside it."""
         kept = path.with_suffix(".json")
-        status = path.stat()
-        size = status.st_size
+        size = path.stat().st_size
         try:
             summary = RunSummary(**json.loads(kept.read_text(encoding="utf-8")))
             if summary.bytes == size:
@@ -93,50 +99,103 @@ class RunFiles:
         except (OSError, ValueError, TypeError):
             pass  # not there yet, or of another version: it is read again
         whole = is_whole(path)
-        if not whole and abs(time.time() - status.st_mtime) < _WRITTEN_S:
-            return summarise(path, None, complete=False)
-        made = summarise(path, read_samples(path), complete=whole)
+        if not whole and _is_fresh(path):
+            return _brief(path)
+        made = replace(summarise(path), complete=whole)
         if made.bytes == size:
-            draft = kept.with_suffix(f".{uuid4().hex}.tmp")
-            draft.write_text(json.dumps(asdict(made)), encoding="utf-8")
-            draft.replace(kept)
+            _keep(made, kept)
         return made
 
 
-def summarise(path: Path, rows: Samples | None, *, complete: bool) -> RunSummary:
-    """What the record and its rows say; without rows, what its beginning says. Raises `RecordError`."""
-    run = run_of(path)
-    plan = _object(run.get("plan"))
-    brief = RunSummary(
+def _is_fresh(path: Path) -> bool:
+    return abs(time.time() - path.stat().st_mtime) < _WRITTEN_S
+
+
+def _keep(summary: RunSummary, kept: Path) -> None:
+    draft = kept.with_suffix(f".{uuid4().hex}.tmp")
+    try:
+        draft.write_text(json.dumps(asdict(summary)), encoding="utf-8")
+        draft.replace(kept)
+    except OSError:  # a full disk, say: the summary is as true, and made again next time
+        with contextlib.suppress(OSError):
+            draft.unlink(missing_ok=True)
+
+
+def _named(path: Path) -> RunSummary:
+    """What the file's name says."""
+    return RunSummary(
         id=path.stem,
-        rig=str(plan.get("rig") or path.stem.split("-", 1)[-1].rsplit("-", 1)[0]),
-        plan_id=plan.get("plan_id"),
-        plan_hash=plan.get("plan_hash"),
-        who=run.get("who", ""),
+        rig=path.stem.split("-", 1)[-1].rsplit("-", 1)[0].removesuffix("-incident"),
+        incident=None,
+        error=None,
+        plan_id=None,
+        plan_hash=None,
+        who="",
         started=_stamp(path.stem),
         ended=None,
         samples=None,
         lost_samples=None,
         bytes=path.stat().st_size,
-        complete=complete,
+        complete=False,
         max_solve_error_deg=None,
         max_tracking_error_deg=None,
         max_lateness_us=None,
     )
-    if rows is None:
-        return brief
+
+
+def _unreadable(path: Path, error: Exception) -> RunSummary:
+    match error:
+        case RecordError():
+            why = error.why
+        case OSError(strerror=str(told)):
+            why = told
+        case _:
+            why = str(error)
+    return replace(_named(path), error=why)
+
+
+def _brief(path: Path) -> RunSummary:
+    """What the record's beginning says. Raises `RecordError`."""
+    run = run_of(path)
+    plan = _object(run.get("plan"))
+    named = _named(path)
+    return replace(
+        named,
+        rig=str(run.get("rig") or plan.get("rig") or named.rig),
+        incident=run.get("incident"),
+        plan_id=plan.get("plan_id"),
+        plan_hash=plan.get("plan_hash"),
+        who=run.get("who", ""),
+    )
+
+
+def summarise(path: Path) -> RunSummary:
+    """What the whole record says, but for whether it is complete. Raises `RecordError`."""
+    brief = _brief(path)
+    rows, events = read_record(path)
     flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & LEAD == 0)
-    sequence = rows["seq"].astype(np.int64)
     return replace(
         brief,
         started=float(rows["wall_ns"][0]) / 1e9 if rows.size else brief.started,
         ended=float(rows["wall_ns"][-1]) / 1e9 if rows.size else None,
         samples=int(rows.size),
-        lost_samples=int(sequence[-1] - sequence[0] + 1 - rows.size) if rows.size else 0,
+        lost_samples=_lost(rows, events),
         max_solve_error_deg=_largest(rows["solve_error_deg"][flying]),
         max_tracking_error_deg=_largest(rows["tracking_error_deg"][flying]),
         max_lateness_us=_largest(rows["lateness_us"]),
     )
+
+
+def _lost(rows: Samples, events: list[dict[str, Any]]) -> int:
+    """How many of the run's samples are missing: between the rows, and to its beginning and end where it tells them."""
+    heads = {event.get("kind"): head for event in events if isinstance(head := event.get("head"), int)}
+    first = [int(rows["seq"][0])] if rows.size else []
+    last = [int(rows["seq"][-1])] if rows.size else []
+    if "run_begin" in heads:
+        first.append(heads["run_begin"] + 1)
+    if "run_end" in heads:
+        last.append(heads["run_end"])
+    return max(last) - min(first) + 1 - rows.size if first and last else 0
 
 
 def _stamp(run: str) -> float | None:
@@ -167,11 +226,20 @@ def table(rows: Samples) -> pa.Table:
 
 
 def write_export(record: Path, target: Path, kind: str) -> None:
-    """Write a record as `csv` or `parquet`. Raises `FileError`."""
+    """Write a record as `csv`, `parquet` or `mcap`. Raises `FileError`.
+
+    As MCAP a record that is cut off, damaged or still being written is repaired: what can be read of it, with an index.
+    """
     try:
+        if kind == "mcap":
+            if is_whole(record):
+                shutil.copyfile(record, target)
+            else:
+                repair(record, target)
+            return
         made = table(read_samples(record))
     except RecordError as error:
-        raise FileError(record.name, f"a record ({error})") from None
+        raise FileError(record.name, f"a record ({error.why})") from None
     if kind == "parquet":
         pq.write_table(made, target)
     else:

@@ -10,6 +10,7 @@ from server.api.wire_plans import (
     IterationsOut,
     JobErrorOut,
     JobStatus,
+    OptionValue,
     PeaksOut,
     ProgressOut,
     StepTimeOut,
@@ -17,12 +18,24 @@ from server.api.wire_plans import (
 )
 
 
+class MethodIn(Wire):
+    """A method with options (GET /methods lists them), and what it is called in the table."""
+
+    method: str
+    options: dict[str, OptionValue] = Field(default={})
+    label: str | None = Field(
+        default=None, min_length=1, max_length=64, description="Of its own; null: the name and the options given"
+    )
+
+
 class CompareIn(Wire):
-    """What to compare. Without `start_deg` every method starts at its own choice of pose."""
+    """What to compare; in a text, options come after colons: alm:mode=open_loop.
+
+    Without `start_deg` every method starts at its own choice of pose."""
 
     trajectory: Sha256
     rig: Name
-    methods: list[str] = Field(min_length=1, max_length=32)
+    methods: list[str | MethodIn] = Field(min_length=1, max_length=32)
     start_deg: Four | None = None
 
 
@@ -41,7 +54,9 @@ class MethodFiguresOut(Wire):
     A method that does not apply to the rig has `refusal` and no figures.
     """
 
+    label: str = Field(description="Unlike every other of the comparison")
     method: str
+    options: dict[str, OptionValue] = Field(default={}, description="The ones that were given")
     source: str
     claims_limits: bool
     refusal: str | None
@@ -49,6 +64,10 @@ class MethodFiguresOut(Wire):
     samples: int | None = None
     feasible: bool | None = None
     exact_share: float | None = Field(default=None, description="0..1, of the samples")
+    exact_samples: int | None = None
+    exact_percent: float | None = Field(
+        default=None, description="The share as tables show it: in hundredths, rounded down"
+    )
     max_error_deg: float | None = None
     rms_error_deg: float | None = None
     max_matrix_error: float | None = None
@@ -89,7 +108,7 @@ class ComparisonOut(Wire):
     trajectory: Sha256
     trajectory_name: str
     rig: Name
-    methods: list[str]
+    methods: list[str] = Field(description="Their labels")
     rate_hz: float
     created_at: datetime
     error: JobErrorOut | None

@@ -69,13 +69,32 @@ class BlockingOut(Wire):
     limit: LimitName
 
 
+class VerdictOut(Wire):
+    """What the verdict of method plan rests on."""
+
+    decided_by: str = Field(description="checked; or the limit that closes the way, start_rate, or three-axis")
+    statement: str
+    grid_deg: float | None = Field(description="Of the search; null where there was none")
+    max_matrix_error_between_samples: float | None
+
+
+class LeadsOut(Wire):
+    """The ways from rest to the first sample and from the last one to rest."""
+
+    lead_in_s: float
+    lead_out_s: float
+    refusal: str | None = Field(description="Why there is none")
+
+
 class ReportOut(Wire):
     """The report of `fullpose solve --report`, key by key; keys may be added, not renamed."""
 
     method: str
     rig: str
     samples: int
-    feasible: bool
+    feasible: bool = Field(description="Inside every limit, no sample given up for one; see exact_samples")
+    exact_samples: int | None = Field(default=None, description="Within 1e-9 deg of the attitude")
+    exact_percent: float | None = Field(default=None, description="In hundredths, rounded down")
     max_error_deg: float
     max_matrix_error: float
     iterations: IterationsOut
@@ -88,6 +107,8 @@ class ReportOut(Wire):
     limited_by: list[dict[str, str | int]] = Field(description="frame, limit, samples")
     blocking: BlockingOut | None
     warnings: list[Notice] = Field(default=[])
+    verdict: VerdictOut | None = Field(default=None, description="Of method plan")
+    leads: LeadsOut | None = Field(default=None, description="Of method plan")
 
 
 class MarginOut(Wire):
@@ -143,7 +164,7 @@ class RemedyIn(Wire):
 class RemedyChange(Wire):
     """What was changed, by how much (`unit`: times, deg, deg/s or deg/s^2), and that in words."""
 
-    what: str = Field(description="time; the axis yaw, pitch or roll; or frame and limit")
+    what: str = Field(description="time; the axis yaw, pitch or roll; frame and limit; or nothing")
     value: float
     unit: str
     statement: str

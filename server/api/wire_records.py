@@ -14,6 +14,11 @@ class RunOut(Wire):
 
     id: str
     rig: str
+    incident: str | None = Field(
+        description="Null: a run. Else no flight: what was kept around a fault while no run was recorded, and the code"
+        " of its alarm"
+    )
+    error: str | None = Field(description="Why the record cannot be read: then nothing but its name is known")
     plan_id: str | None
     plan_hash: str | None
     who: str
@@ -21,9 +26,9 @@ class RunOut(Wire):
     ended_at: datetime | None
     duration_s: float | None
     samples: int | None = Field(description="Null, like all that follows from them, while the run is being written")
-    lost_samples: int | None = Field(description="Sequence numbers that are missing")
+    lost_samples: int | None = Field(description="Sequence numbers that are missing, from its beginning to its end")
     bytes: int
-    complete: bool = Field(description="False while it is being written, or where the recorder was cut off")
+    complete: bool = Field(description="False while it is being written, or where it was cut off or is damaged")
     max_solve_error_deg: float | None
     max_tracking_error_deg: float | None
     max_lateness_us: float | None
@@ -52,7 +57,7 @@ class ServerLimits(Wire):
 
 
 class HealthOut(Wire):
-    """`status` is degraded where a rig process, a recorder or the planner does not answer."""
+    """`status` is degraded where a rig process, a recorder or the planner does not answer, or a rig file is none."""
 
     status: Literal["ok", "degraded"]
     version: str

@@ -5,7 +5,6 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from server.api.wire import Four, FrameName, Wire
-from server.api.wire_plans import OptionValue
 
 StateName = Literal[
     "disconnected",
@@ -21,13 +20,18 @@ StateName = Literal[
     "faulted",
 ]
 Severity = Literal["warning", "fault", "emergency"]
+_INT64 = 2**63  # what database and rig process hold
+Ordinal = Annotated[int, Field(ge=0, lt=_INT64)]
+Word = Annotated[str, Field(max_length=64)]
+# Bounded, as all that a command brings is: the rig process reads it in the loop, in one packet.
+LiveOptionValue = bool | Annotated[int, Field(ge=-_INT64, lt=_INT64)] | float | Word
 
 
 class LeaseToken(Wire):
     """Proof of holding the lease: its epoch, and a sequence that grows with every command."""
 
-    epoch: int = Field(ge=0)
-    sequence: int = Field(ge=0)
+    epoch: Ordinal
+    sequence: Ordinal
 
 
 class NoArgs(Wire):
@@ -37,8 +41,8 @@ class NoArgs(Wire):
 class LiveLoad(Wire):
     """How a live source is flown: a step method that keeps the limits, and its options."""
 
-    method: str = "exact"
-    options: dict[str, OptionValue] = Field(default={})
+    method: Word = "exact"
+    options: dict[Word, LiveOptionValue] = Field(default={}, max_length=32)
     first_sample_s: float = Field(default=5.0, gt=0.0, le=60.0, description="How long go_live waits for the source")
 
 
@@ -58,8 +62,8 @@ class LoadArgs(Wire):
 class ArmArgs(Wire):
     """The pair that the caller means to arm; refused where another one is loaded."""
 
-    plan_hash: str | None = None
-    rig_hash: str | None = None
+    plan_hash: Word | None = None
+    rig_hash: Word | None = None
 
 
 class MoveArgs(Wire):
@@ -74,7 +78,7 @@ class JogArgs(Wire):
 
 
 class AcknowledgeArgs(Wire):
-    numbers: list[int] | None = Field(default=None, description="Of alarms; null: all that stand")
+    numbers: list[Ordinal] | None = Field(default=None, max_length=256, description="Of alarms; null: all that stand")
 
 
 class _Command(Wire):
@@ -195,7 +199,9 @@ class LeaseIn(Wire):
     """take: when free or silent; takeover: by force, audited; request: ask the holder; grant: hand over; renew."""
 
     action: Literal["take", "takeover", "request", "grant", "renew"] = "take"
-    to: str | None = Field(default=None, description="With grant: who of those who asked; null: the first")
+    to: str | None = Field(
+        default=None, max_length=128, description="With grant: who of those who asked; null: the first"
+    )
 
 
 class LeaseOut(Wire):
@@ -234,6 +240,9 @@ class AlarmOut(Wire):
     first: bool = False
     acknowledged_by: str | None = None
     count: int = 1
+    last_time_s: float | None = Field(
+        default=None, description="Of the newest occurrence, where there was more than one"
+    )
 
 
 class RecorderOut(Wire):

@@ -2,16 +2,15 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from server.cli._exit import DONE, fail, say
+from server.cli._exit import DONE
+from server.cli._flight import read_flight
+from server.cli._outputs import check_outputs
 from server.cli._progress import progress_bar
-from server.cli.solve import METHODS, _convention, _pose
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from server.cli.solve import METHODS
 
 COLUMNS = ("method", "exact", "largest error", "beyond limits", "limited", "peak rate", "peak accel.", "step")
 
@@ -26,7 +25,9 @@ def compare(
         Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
     ],
     rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
-    methods: Annotated[str, typer.Option(help=f"Names with commas between, of {METHODS}.")] = METHODS.replace(" ", ""),
+    methods: Annotated[
+        str, typer.Option(help=f"With commas between, options after colons (alm:mode=open_loop), of {METHODS}.")
+    ] = METHODS.replace(" ", ""),
     report: Annotated[Path | None, typer.Option(help="Write the figures as JSON.")] = None,
     page: Annotated[Path | None, typer.Option(help="Write table and plots as one self-contained HTML page.")] = None,
     start: Annotated[
@@ -39,28 +40,27 @@ def compare(
         float | None, typer.Option(help="Bring the flight to this rate [Hz] first; without it its samples are solved.")
     ] = None,
 ) -> None:
-    """Solve with each method, print the figures, write what was asked for. Exit 2: bad input, nothing written."""
+    """Solve with each method, print the figures, write what was asked for.
+
+    Exit 2: bad input, or no method applies to the rig; nothing written.
+    """
     from server.store.comparison import make_comparison
-    from server.store.output_file import check_writable, write_text
+    from server.store.output_file import write_text
     from server.store.rig_file import find_rig
+    from solver.compare import variants
 
-    names = [name.strip() for name in methods.split(",") if name.strip()]
-    if not names:
-        fail(f"--methods {methods!r}: expected names with commas between, of {METHODS}")
+    asked = variants([text for text in methods.split(",") if text.strip()])
     chosen = find_rig(rig).rig
-    pose = _pose(start)
-    for path in filter(None, (report, page)):
-        check_writable(path)
-    at, q, own_start = _read(flight, convention)
+    check_outputs({"--report": report, "--page": page}, flight, rig)
+    read = read_flight(flight, convention, chosen, start)
     with progress_bar("compare") as bar:
-        done_before: dict[str, int] = {}
+        order = {one.label: k for k, one in enumerate(asked)}
 
-        def progress(method: str, done: int, total: int) -> None:
-            done_before.setdefault(method, len(done_before))
+        def progress(label: str, done: int, total: int) -> None:
             if bar is not None:
-                bar(done_before[method] * total + done, len(names) * total)
+                bar(order[label] * total + done, len(order) * total)
 
-        made = make_comparison(flight.name, at, q, chosen, names, own_start if pose is None else pose, rate, progress)
+        made = make_comparison(flight.name, read.time, read.q, chosen, asked, read.start, rate, progress)
     if report is not None:
         write_text(report, json.dumps(made.report, indent=2) + "\n")
     if page is not None:
@@ -69,35 +69,20 @@ def compare(
     raise typer.Exit(DONE)
 
 
-def _read(flight: Path, convention: str) -> tuple["NDArray[Any]", "NDArray[Any]", "NDArray[Any] | None"]:
-    """(time, quaternion, start pose or None) of a flight or scenario file."""
-    import numpy as np
-
-    if flight.suffix == ".toml":
-        from server.store.scenario_file import read_scenario
-
-        scenario = read_scenario(flight)
-        return scenario.time, scenario.quaternion, None if scenario.start is None else np.array(scenario.start)
-    from server.store.trajectory_file import read_trajectory
-
-    trajectory = read_trajectory(flight, _convention(convention))
-    for caution in trajectory.warnings:
-        say(f"{flight}: warning: {caution.message}")
-    return trajectory.time, trajectory.q, None
-
-
 def _table(report: dict[str, Any]) -> str:
+    from server.store.report import exact_text
+
     rows = [COLUMNS]
     refusals = []
     for method in report["methods"]:
         if method["refusal"] is not None:
-            refusals.append(method["refusal"])
+            refusals.append(f"{method['label']}: {method['refusal']}")
             continue
         peaks = method["peak"].values()
         rows.append(
             (
-                method["method"],
-                f"{100 * method['exact_share']:.2f} %",
+                method["label"],
+                exact_text(method),
                 f"{method['max_error_deg']:.2g} deg",
                 str(method["limit_violation_samples"]),
                 str(method["limited_samples"]),

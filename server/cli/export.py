@@ -1,6 +1,5 @@
 """`fullpose export`: a recorded run as CSV, Parquet or MCAP."""
 
-import shutil
 from pathlib import Path
 from typing import Annotated
 
@@ -23,7 +22,7 @@ def export(
 ) -> None:
     """Write every sample of the record."""
     from server.api.run_files import write_export
-    from server.store.output_file import check_writable, replacing
+    from server.store.output_file import check_apart, check_writable, replacing
 
     record = _record(run, data_dir)
     target = out or Path(f"{record.stem}.csv")
@@ -31,11 +30,9 @@ def export(
     if kind not in FORMATS:
         fail(f"--out {target}: expected a name ending in .csv, .parquet or .mcap")
     check_writable(target)
+    check_apart({"--out": target}, {"RUN": record})
     with replacing(target) as draft:
-        if kind == "mcap":
-            shutil.copyfile(record, draft)
-        else:
-            write_export(record, draft, kind)
+        write_export(record, draft, kind)
     typer.echo(str(target))
 
 

@@ -6,9 +6,10 @@ from typing import Annotated
 
 import typer
 
-from server.cli._exit import DONE, NOT_FEASIBLE, fail, say
+from server.cli._exit import DONE, NOT_FEASIBLE, fail
+from server.cli._flight import read_flight
+from server.cli._outputs import check_outputs
 from server.cli._progress import progress_bar
-from server.cli.solve import _convention, _pose
 
 KINDS = "slow_down, heading_offset, mounting_offset, relax"
 
@@ -19,7 +20,9 @@ def register(app: typer.Typer) -> None:
 
 
 def remedy(
-    flight: Annotated[Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude.")],
+    flight: Annotated[
+        Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
+    ],
     rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
     kind: Annotated[str, typer.Option(help=f"{KINDS}.")],
     out: Annotated[Path, typer.Option(help="Angles of the changed flight; Parquet where it ends in .parquet.")],
@@ -34,33 +37,30 @@ def remedy(
     ] = "nue",
 ) -> None:
     """Say what was changed, write OUT. Exit 2: bad input, OUT untouched. Exit 3: this remedy is not enough."""
-    from server.store.output_file import check_writable, write_solution, write_text
-    from server.store.remedy import NoRemedyError, check_kind, find_remedy
-    from server.store.report import make_report, margins_report
+    from server.store.errors import NoRemedyError
+    from server.store.output_file import write_solution, write_text
+    from server.store.remedy import check_kind, find_remedy
+    from server.store.report import make_report, margins_report, verdict_report
     from server.store.rig_file import find_rig
-    from server.store.trajectory_file import read_trajectory
     from solver.attitude import dcm_from_quaternion
     from solver.verify import verify
 
-    check_kind(kind, frame, limit)
     chosen = find_rig(rig).rig
-    pose = _pose(start)
-    for path in filter(None, (out, report)):
-        check_writable(path)
-    trajectory = read_trajectory(flight, _convention(convention))
-    for caution in trajectory.warnings:
-        say(f"{flight}: warning: {caution.message}")
-    attitude = dcm_from_quaternion(trajectory.q)
+    check_kind(kind, frame, limit, chosen)
+    check_outputs({"--out": out, "--report": report}, flight, rig)
+    read = read_flight(flight, convention, chosen, start)
+    attitude = dcm_from_quaternion(read.q)
     with progress_bar(kind) as progress:
         try:
             found = find_remedy(
-                kind, trajectory.time, attitude, chosen, frame=frame, limit=limit, start=pose, progress=progress
+                kind, read.time, attitude, chosen, frame=frame, limit=limit, start=read.start, progress=progress
             )
         except NoRemedyError as error:
             fail(f"{flight}: {error}", NOT_FEASIBLE)
     done = found.remedy
     made = make_report(done.plan.solution, verify(done.time, done.plan.solution.angles, done.rig, done.attitude))
     made["rig"] = chosen.name
+    made.update(verdict_report(done.plan))
     made["margins"] = margins_report(done.plan.margins, done.rig)
     made["remedy"] = found.described
     with progress_bar("write") as progress:

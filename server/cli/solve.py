@@ -1,7 +1,6 @@
 """`fullpose solve`: the frame angles of a flight."""
 
 import json
-import math
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,10 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from server.cli._exit import DONE, NOT_FEASIBLE, fail, say
+from server.cli._flight import read_flight
+from server.cli._outputs import check_outputs
 from server.cli._progress import progress_bar
 
 if TYPE_CHECKING:
-    from server.store.trajectory import Trajectory
+    from server.cli._flight import Flight
+    from solver.planner import Plan
     from solver.rig import Rig
     from solver.solution import Solution
 
@@ -28,7 +30,9 @@ def register(app: typer.Typer) -> None:
 
 
 def solve(
-    flight: Annotated[Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude.")],
+    flight: Annotated[
+        Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
+    ],
     rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
     out: Annotated[Path, typer.Option(help="Angles, one row an input row; Parquet where it ends in .parquet.")],
     method: Annotated[str, typer.Option(help=f"{METHODS}.")] = "plan",
@@ -45,22 +49,21 @@ def solve(
     ] = None,
 ) -> None:
     """Solve, write OUT and what else was asked for. Exit 2: bad input, OUT untouched. Exit 3: not feasible."""
-    from server.store.output_file import check_writable, write_solution, write_text
-    from server.store.report import make_report, why_infeasible
+    from server.store.output_file import write_solution, write_text
+    from server.store.report import make_report, verdict_report, why_infeasible, why_not_exact
     from server.store.rig_file import find_rig
-    from server.store.trajectory_file import read_trajectory
+    from solver.attitude import dcm_from_quaternion
     from solver.verify import verify
 
     chosen = find_rig(rig).rig
-    pose = _pose(start)
-    for path in filter(None, (out, report, plot)):
-        check_writable(path)
-    trajectory = read_trajectory(flight, _convention(convention))
-    for caution in trajectory.warnings:
-        say(f"{flight}: warning: {caution.message}")
-    solution, attitude = _solve(trajectory, chosen, method, option or [], pose)
+    check_outputs({"--out": out, "--report": report, "--plot": plot}, flight, rig)
+    read = read_flight(flight, convention, chosen, start)
+    attitude = dcm_from_quaternion(read.q)
+    solution, planned = _solve(read, attitude, chosen, method, option or [])
     made = make_report(solution, verify(solution.time, solution.angles, chosen, attitude))
-    made["warnings"] = [{"code": c.code, "message": c.message} for c in trajectory.warnings]
+    made["warnings"] = [{"code": c.code, "message": c.message} for c in read.warnings]
+    if planned is not None:
+        made.update(verdict_report(planned))
     with progress_bar("write") as progress:
         write_solution(out, solution, progress)
     if report is not None:
@@ -75,61 +78,63 @@ def solve(
         write_text(plot, plot_page(solution, made, flight.name))
     typer.echo(_summary(made))
     why = why_infeasible(made)
+    statement = made["verdict"]["statement"] if planned is not None else ""
     if why is not None:
-        fail(f"{flight} is not feasible on {chosen.name} with {method}: {why}", NOT_FEASIBLE)
+        rests = f". {statement}" if statement else ""
+        fail(f"{flight} is not feasible on {chosen.name} with {method}: {why}{rests}", NOT_FEASIBLE)
+    if planned is not None:
+        say(f"{flight}: {statement}")
+        if planned.lead_note:
+            say(f"{flight}: a rig cannot fly it from rest to rest: {planned.lead_note}")
+    if (missed := why_not_exact(made)) is not None:
+        say(f"{flight}: warning: {missed}")
     raise typer.Exit(DONE)
 
 
-def _solve(trajectory: "Trajectory", rig: "Rig", method: str, texts: list[str], start: Any) -> tuple["Solution", Any]:
-    from solver.attitude import dcm_from_quaternion
+def _solve(
+    flight: "Flight", attitude: Any, rig: "Rig", method: str, texts: list[str]
+) -> tuple["Solution", "Plan | None"]:
+    """The solution; of method plan the whole plan, too, which says what the verdict rests on."""
     from solver.method_options import method_options, parse_option
+    from solver.solve import PLAN
     from solver.solve import solve as solve_flight
 
     options = method_options(method, dict(parse_option(text, method) for text in texts))
-    attitude = dcm_from_quaternion(trajectory.q)
     with progress_bar(method) as progress:
+        if method == PLAN:
+            from solver.planner import plan
+
+            whole = plan(
+                flight.time,
+                attitude,
+                rig,
+                start=flight.start,
+                options=options,
+                progress=progress,
+                clock=time.perf_counter,
+            )
+            return whole.solution, whole
         solution = solve_flight(
-            trajectory.time,
+            flight.time,
             attitude,
             rig,
             method=method,
             options=options,
-            start=start,
+            start=flight.start,
             clock=time.perf_counter,
             progress=progress,
         )
-    return solution, attitude
-
-
-def _pose(text: str | None) -> Any:
-    if text is None:
-        return None
-    import numpy as np
-
-    parts = text.split(",")
-    try:
-        angles = [float(part) for part in parts]
-    except ValueError:
-        angles = []
-    if len(angles) != 4 or not all(map(math.isfinite, angles)):
-        fail(f"--start {text}: expected four angles in degrees, base,outer,middle,inner, such as 0,0,0,0")
-    return np.deg2rad(np.array(angles))
-
-
-def _convention(text: str) -> Any:
-    from server.store.trajectory import Convention
-
-    try:
-        return Convention(text)
-    except ValueError:
-        fail(f"--convention {text}: expected one of {', '.join(Convention)}")
+    return solution, None
 
 
 def _summary(report: dict[str, Any]) -> str:
+    from server.store.report import exact_text
+
     peaks = ", ".join(f"{frame} {peak['rate_deg_s']:.1f}" for frame, peak in report["peak"].items())
     error = report["max_error_deg"]
+    exact = "exact" if report["exact_samples"] == report["samples"] else f"{exact_text(report)} of the samples exact"
     return (
         f"{report['samples']} samples on {report['rig']} with {report['method']}: "
-        f"{'feasible' if report['feasible'] else 'not feasible'}, largest error {error:.3g} deg, "
+        f"{'feasible' if report['feasible'] else 'not feasible'}, {exact}, largest error {error:.3g} deg, "
         f"peak rates {peaks} deg/s, solved in {report['solve_s']:.3g} s"
     )

@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 def compare_page(report: dict[str, Any], rows: tuple[Row, ...], rig: Rig, attitude: Array) -> str:
     """The page of a comparison: its report, its rows, and the flight's attitude (n, 3, 3) body from reference."""
     methods = [
-        _method(row.solution, COLOURS[k % len(COLOURS)], DASHES[k // len(COLOURS) % len(DASHES)])
+        _method(row.variant.label, row.solution, COLOURS[k % len(COLOURS)], DASHES[k // len(COLOURS) % len(DASHES)])
         for k, row in enumerate(rows)
         if row.solution is not None
     ]
@@ -79,7 +79,7 @@ def _flight(rows: tuple[Row, ...], attitude: Array) -> dict[str, Any]:
     return {"t": _values(time[keep]), "euler": [_values(column) for column in euler[keep].T]}
 
 
-def _method(solution: Solution, colour: str, dash: str) -> dict[str, Any]:
+def _method(name: str, solution: Solution, colour: str, dash: str) -> dict[str, Any]:
     frames = list(solution.rig.geometry.frames)
     angles = np.rad2deg(solution.angles[:, frames])
     rates, accelerations = np.zeros_like(angles), np.zeros_like(angles)
@@ -89,7 +89,7 @@ def _method(solution: Solution, colour: str, dash: str) -> dict[str, Any]:
     error = np.rad2deg(solution.error)
     keep = thin(solution.time.size, POINTS, angles, rates, accelerations, error)
     return {
-        "name": solution.method,
+        "name": name,
         "colour": colour,
         "dash": dash,
         "t": _values(solution.time[keep]),

@@ -3,6 +3,9 @@
 import math
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from server.store.report import make_report
 from solver.compare import EXACT_WITHIN, Failure, Figures, Row
 from solver.rig import FRAMES, LIMITS, Rig
@@ -10,20 +13,21 @@ from solver.rig import FRAMES, LIMITS, Rig
 SCHEMA = "fullpose.comparison/1"
 
 
-def comparison_report(rows: tuple[Row, ...], rig: Rig, flight: str, resampling: str | None) -> dict[str, Any]:
-    """The report as JSON-ready values (no nan, no infinity); `resampling`: what was done to the samples, if anything.
+def comparison_report(
+    rows: tuple[Row, ...], rig: Rig, flight: str, time: NDArray[np.float64], resampling: str | None
+) -> dict[str, Any]:
+    """The report as JSON-ready values (no nan, no infinity); time (n,) [s] of the samples that were solved,
+    `resampling`: what was done to them first, if anything.
 
-    A method that does not apply to the rig has `refusal` and none of the figures.
+    Each method has a `label` of its own. One that does not apply to the rig has `refusal` and none of the figures.
     """
-    solved = [row.solution for row in rows if row.solution is not None]
-    time = solved[0].time if solved else None
     return {
         "schema": SCHEMA,
         "flight": flight,
         "rig": rig.name,
         "geometry": rig.geometry.value,
-        "samples": 0 if time is None else int(time.size),
-        "duration_s": 0.0 if time is None else float(time[-1] - time[0]),
+        "samples": int(time.size),
+        "duration_s": float(time[-1] - time[0]),
         "resampling": resampling,
         "exact_within_deg": math.degrees(EXACT_WITHIN),
         "methods": [_method(row, rig) for row in rows],
@@ -32,7 +36,9 @@ def comparison_report(rows: tuple[Row, ...], rig: Rig, flight: str, resampling: 
 
 def _method(row: Row, rig: Rig) -> dict[str, Any]:
     head: dict[str, Any] = {
-        "method": row.method,
+        "label": row.variant.label,
+        "method": row.variant.method,
+        "options": dict(row.variant.options),
         "source": row.source,
         "claims_limits": row.claims_limits,
         "refusal": row.refusal,

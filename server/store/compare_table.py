@@ -4,7 +4,7 @@ import html
 import math
 from typing import Any
 
-from server.store.report import UNITS
+from server.store.report import UNITS, exact_text
 
 HEADINGS = (
     ("Method", "the source is shown over the name"),
@@ -24,18 +24,18 @@ HEADINGS = (
 
 
 def metrics_table(report: dict[str, Any], keys: dict[str, tuple[str, str]]) -> str:
-    """A table with one row a method; `keys`: colour and dash of each."""
+    """A table with one row a method; `keys`: colour and dash of each label."""
     head = "".join(f'<th scope="col" title="{html.escape(tip)}">{html.escape(name)}</th>' for name, tip in HEADINGS)
     rows = "".join(_row(method, keys) for method in report["methods"])
     return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
 
 
 def _row(method: dict[str, Any], keys: dict[str, tuple[str, str]]) -> str:
-    name, source = html.escape(method["method"]), html.escape(method["source"])
+    name, source = html.escape(method["label"]), html.escape(method["source"])
     if method["refusal"] is not None:
         refusal = html.escape(method["refusal"])
         return f'<tr><th scope="row" title="{source}">{name}</th><td class="text" colspan="12">{refusal}</td></tr>'
-    colour, dash = keys[method["method"]]
+    colour, dash = keys[method["label"]]
     line = (
         f'<svg width="26" height="10" aria-hidden="true"><path d="M0 5H26" stroke="{colour}" stroke-width="2.5" '
         f'stroke-dasharray="{dash}"/></svg>'
@@ -48,7 +48,7 @@ def _row(method: dict[str, Any], keys: dict[str, tuple[str, str]]) -> str:
     step = method["step_us"]
     failures = method["failures"]
     cells = [
-        _cell(_share(method["exact_share"]), bad=method["exact_share"] < 1.0),
+        _cell(html.escape(exact_text(method)), bad=method["exact_share"] < 1.0),
         _cell(_number(method["max_error_deg"])),
         _cell(_number(method["rms_error_deg"])),
         _cell(_number(method["max_matrix_error"])),
@@ -79,13 +79,6 @@ def _cell(value: str, tip: str = "", bad: bool = False, text: bool = False) -> s
     kinds = " ".join(kind for kind, on in (("bad", bad), ("text", text)) if on)
     label = f' class="{kinds}"' if kinds else ""
     return f'<td{label} title="{html.escape(tip)}">{html.escape(value)}</td>' if tip else f"<td{label}>{value}</td>"
-
-
-def _share(share: float) -> str:
-    """Per cent; all and none only where it is all or none."""
-    if share in (0.0, 1.0):
-        return f"{100 * share:.0f} %"
-    return "< 0.01 %" if share < 1e-4 else f"{min(100 * share, 99.99):.2f} %"
 
 
 def _number(value: float | None) -> str:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from server.store.comparisons import PAGE, REPORT, REQUEST, CompareRequest
-from server.store.errors import StoreError
+from server.store.errors import StoreError, job_code
 from solver.errors import SolverError
 
 REPORTS_S = 0.05  # shortest time between two reports of progress
@@ -28,7 +28,7 @@ def main() -> None:
     try:
         _make(folder, answers)
     except (SolverError, StoreError) as error:
-        _say(answers, {"failed": {"code": type(error).__name__, "message": str(error)}})
+        _say(answers, {"failed": {"code": job_code(error), "message": str(error)}})
         sys.exit(1)
 
 
@@ -41,14 +41,14 @@ def _make(folder: Path, answers: IO[str]) -> None:
 
     request = CompareRequest.from_json((folder / REQUEST).read_text(encoding="utf-8"))
     at, q = read_arrays(Path(request.trajectory))
-    order = {method: k for k, method in enumerate(dict.fromkeys(request.methods))}
+    order = {variant.label: k for k, variant in enumerate(request.methods)}
     due = 0.0
 
-    def progress(method: str, done: int, total: int) -> None:
+    def progress(label: str, done: int, total: int) -> None:
         nonlocal due
         if time.monotonic() >= due:
             due = time.monotonic() + REPORTS_S
-            _say(answers, {"progress": [method, order[method] * total + done, len(order) * total]})
+            _say(answers, {"progress": [label, order[label] * total + done, len(order) * total]})
 
     start = None if request.start is None else np.array(request.start)
     made = make_comparison(

@@ -8,15 +8,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from server.store.compare_length import check_length, check_samples
 from server.store.compare_page import compare_page
 from server.store.compare_report import comparison_report
 from solver.attitude import dcm_from_quaternion
-from solver.compare import compare
+from solver.compare import compare, variants
+from solver.errors import MethodError
 from solver.resample import resample
 from solver.rig import Rig
+from solver.variant import Variant
 
 Array = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]  # method, done, total
+Progress = Callable[[str, int, int], None]  # label, done, total
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,7 @@ def make_comparison(
     at: Array,
     q: Array,
     rig: Rig,
-    methods: Sequence[str],
+    methods: Sequence[str | Variant],
     start: Array | None = None,
     rate_hz: float | None = None,
     progress: Progress | None = None,
@@ -40,13 +43,21 @@ def make_comparison(
     """Compare `methods` on the flight `name`: at (n,) [s], q (n, 4) w, x, y, z reference to body; start (4,) [rad].
 
     With `rate_hz` the flight is first brought to that rate, as a plan is; else its own samples are solved.
-    Raises `solver.errors.SolverError`.
+    Raises `solver.errors.SolverError`: `InputError` for more samples than `compare_length` allows, `MethodError` where
+    no method applies to the rig.
     """
+    asked = variants(methods)
     note = None
-    if rate_hz is not None:
+    if rate_hz is None:
+        check_samples(at.size, len(asked))
+    else:
+        check_length(float(at[-1] - at[0]), rate_hz, len(asked))
         flight = resample(at, q, rate_hz)
         at, q, note = flight.time, flight.q, flight.note
     attitude = dcm_from_quaternion(q)
-    rows = compare(at, attitude, rig, methods, start=start, clock=time.perf_counter, progress=progress)
-    report = comparison_report(rows, rig, name, note)
+    rows = compare(at, attitude, rig, asked, start=start, clock=time.perf_counter, progress=progress)
+    if all(row.refusal is not None for row in rows):
+        reasons = "; ".join(f"{row.variant.label}: {row.refusal}" for row in rows)
+        raise MethodError(f"no method that is asked for applies to {rig.name}: {reasons}")
+    report = comparison_report(rows, rig, name, at, note)
     return Comparison(report, compare_page(report, rows, rig, attitude))

@@ -19,6 +19,7 @@ from uuid import uuid4
 
 from server.store.errors import NotFoundError
 from solver.rig import FrameLimits, Geometry, Rig
+from solver.variant import Variant
 
 log = logging.getLogger(__name__)
 Status = Literal["queued", "running", "done", "failed", "cancelled", "interrupted"]
@@ -35,7 +36,7 @@ class CompareRequest:
     trajectory: str  # folder of the flight's arrays
     name: str
     rig: Rig
-    methods: tuple[str, ...]
+    methods: tuple[Variant, ...]
     rate_hz: float
     start: tuple[float, float, float, float] | None  # [rad]
     created: float  # [s] since the epoch
@@ -55,10 +56,14 @@ class CompareRequest:
             **{
                 **values,
                 "rig": Rig(rig["name"], Geometry(rig["geometry"]), (base, outer, middle, inner)),
-                "methods": tuple(values["methods"]),
+                "methods": tuple(_variant(method) for method in values["methods"]),
                 "start": None if start is None else tuple(start),
             }
         )
+
+
+def _variant(value: str | dict[str, Any]) -> Variant:
+    return Variant(value, value) if isinstance(value, str) else Variant(**value)  # earlier servers kept names alone
 
 
 @dataclass
@@ -69,7 +74,7 @@ class Comparison:
     request: CompareRequest
     status: Status
     error: dict[str, str] | None = None
-    progress: tuple[str, int, int] = ("", 0, 1)  # method, samples done, samples of all methods
+    progress: tuple[str, int, int] = ("", 0, 1)  # label, samples done, samples of all methods
     task: asyncio.Task[None] | None = field(default=None, repr=False)
 
 
@@ -107,6 +112,8 @@ class Comparisons:
         if self.get(comparison).status != "done":
             return None
         report: dict[str, Any] = json.loads((self.folder(comparison) / REPORT).read_text(encoding="utf-8"))
+        for method in report["methods"]:
+            method.setdefault("label", method["method"])  # earlier servers compared each method once
         return report
 
     def folder(self, comparison: str) -> Path:
@@ -154,8 +161,8 @@ class Comparisons:
                     message: dict[str, Any] = json.loads(line)
                     error = message.get("failed", error)
                     if "progress" in message:
-                        method, done, total = message["progress"]
-                        job.progress = (method, done, total)
+                        label, done, total = message["progress"]
+                        job.progress = (label, done, total)
                 code = await process.wait()
             finally:
                 with contextlib.suppress(ProcessLookupError):

@@ -1,5 +1,7 @@
 """The errors of this package: one root; each child carries its evidence."""
 
+from solver.errors import InputError, MethodError, RigError, SolverError
+
 
 class StoreError(Exception):
     """Root of every error that `server.store` raises."""
@@ -54,3 +56,25 @@ class InUseError(StoreError):
 
 class TransitionError(StoreError):
     """A job told to do what its status does not allow."""
+
+
+class NoRemedyError(StoreError):
+    """No single limit, raised, makes the flight fit."""
+
+
+# The codes of the problem documents, where the same error is one there.
+_JOB_CODES: tuple[tuple[type[Exception], str], ...] = (
+    (InputError, "solver-input"),
+    (MethodError, "method"),
+    (RigError, "rig"),
+    (FileError, "file"),
+    (NotFoundError, "not-found"),
+    (NoRemedyError, "no-remedy"),
+    (SolverError, "solver"),
+    (StoreError, "job"),
+)
+
+
+def job_code(error: Exception) -> str:
+    """The stable code of what a job failed by; "internal" for what nobody planned."""
+    return next((code for kind, code in _JOB_CODES if isinstance(error, kind)), "internal")

@@ -10,7 +10,7 @@ import sys
 import time
 from typing import IO, Any
 
-from server.store.errors import StoreError
+from server.store.errors import StoreError, job_code
 from server.store.planning_request import PlanRequest
 from solver.errors import SolverError
 
@@ -30,7 +30,7 @@ def main() -> None:
         try:
             result = make_plan_folder(PlanRequest.from_json(json.loads(line)), reporter.report)
         except (SolverError, StoreError) as error:
-            _say(answers, {"failed": {"code": type(error).__name__, "message": str(error)}})
+            _say(answers, {"failed": {"code": job_code(error), "message": str(error)}})
         except Exception as error:  # noqa: BLE001 - the job failed, the process goes on; the server logs it
             message = f"{type(error).__name__}: {error}"
             _say(answers, {"failed": {"code": "internal", "message": message}})

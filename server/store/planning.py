@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from server.plan_folder import make_plan, rig_hash, write_plan
-from server.store.errors import StoreError
 from server.store.planning_request import PlanRequest
 from server.store.remedy import find_remedy
-from server.store.report import make_report, margins_report, why_infeasible
+from server.store.report import make_report, margins_report, verdict_report, why_infeasible
 from server.store.trajectories import read_arrays
 from solver.attitude import dcm_from_quaternion, quaternion_from_dcm
 from solver.errors import MethodError
@@ -35,19 +34,21 @@ _NONE = np.empty((0, 4))
 def make_plan_folder(request: PlanRequest, progress: Progress) -> dict[str, Any]:
     """Make the plan and write its folder; returns what the store keeps of it, JSON-ready.
 
-    Raises `StoreError`, `solver.errors.SolverError`. An infeasible flight is no error: it is written, not flyable.
+    Raises `solver.errors.SolverError`. An infeasible flight is no error: it is written, not flyable.
     """
     progress("resample", 0, 1)
     time_s, q = read_arrays(request.trajectory)
     flight = resample(np.array(time_s), np.array(q), request.rate_hz)
     if flight.time.size < 2:
-        raise StoreError(f"a flight of at least two samples at {request.rate_hz:g} Hz is needed, this one is a moment")
+        flight = _stand(flight, request.rate_hz)
     made = _solve(request, flight.time - flight.time[0], flight.q, progress)
     solution = made.solution
     at, rig = solution.time, solution.rig
     progress("verify", 0, 1)
     report = make_report(solution, verify(at, solution.angles, rig, dcm_from_quaternion(made.q)))
     report["rig"] = request.rig.name
+    if made.planned is not None:
+        report |= verdict_report(made.planned)
     refusal = why_infeasible(report)
     before, after = _NONE, _NONE
     if refusal is None:
@@ -68,6 +69,17 @@ def make_plan_folder(request: PlanRequest, progress: Progress) -> dict[str, Any]
     return result | {"verdict": made.verdict, "margins": shown, "remedy": remedy}
 
 
+def _stand(moment: Resampled, rate_hz: float) -> Resampled:
+    """A flight of one sample, held for one period: what is flown is a way from one sample to the next."""
+    return replace(
+        moment,
+        time=moment.time[0] + np.arange(2) / rate_hz,
+        q=moment.q.repeat(2, axis=0),
+        body_rate=np.zeros((2, 3)),
+        note=f"one sample at {rate_hz:g} Hz, held for one period",
+    )
+
+
 @dataclass(frozen=True)
 class _Made:
     """A solution, what its verdict rests on, and how to get its leads (which may raise `MethodError`).
@@ -79,6 +91,7 @@ class _Made:
     q: Array
     verdict: str
     leads: Callable[[], tuple[Array, Array]]
+    planned: Plan | None = None  # of the planner's solutions
     remedy: dict[str, Any] = field(default_factory=dict)
 
 
@@ -96,7 +109,7 @@ def _solve(request: PlanRequest, at: Array, q: Array, progress: Progress) -> _Ma
     if request.method == PLAN:
         # Asked directly: the planner keeps room for its own leads and says what its verdict rests on.
         whole = plan(at, attitude, request.rig, start=start, options=options, clock=clock, progress=tell)
-        return _Made(whole.solution, q, whole.verdict.statement, lambda: _planned(whole))
+        return _Made(whole.solution, q, whole.verdict.statement, lambda: _planned(whole), whole)
     solution = solve(
         at, attitude, request.rig, method=request.method, options=options, start=start, clock=clock, progress=tell
     )
@@ -129,7 +142,7 @@ def _remedied(
     q = continuous(quaternion_from_dcm(found.remedy.attitude))
     # A rig with a limit raised is still that rig by name: the plan's page compares the two.
     solution = replace(whole.solution, rig=replace(whole.solution.rig, name=request.rig.name))
-    return _Made(solution, q, whole.verdict.statement, lambda: _planned(whole), found.described)
+    return _Made(solution, q, whole.verdict.statement, lambda: _planned(whole), whole, found.described)
 
 
 def _planned(whole: Plan) -> tuple[Array, Array]:

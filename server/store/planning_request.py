@@ -4,7 +4,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from solver.rig import FrameLimits, Geometry, Rig
+from solver.errors import InputError
+from solver.rig import FRAMES, FrameLimits, Geometry, Rig
 
 
 @dataclass(frozen=True)
@@ -42,3 +43,10 @@ class PlanRequest:
                 "start": None if start is None else tuple(start),
             }
         )
+
+
+def check_frame(frame: str | None, rig: Rig) -> None:
+    """Raise `InputError` where a limit of a frame that the rig has not is asked for."""
+    present = [FRAMES[index] for index in rig.geometry.frames]
+    if frame is not None and frame not in present:
+        raise InputError("frame", None, frame, f"one of {', '.join(present)}: {rig.name} has no {frame} frame")

@@ -8,19 +8,16 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from server.store.errors import StoreError
+from server.store.errors import NoRemedyError, StoreError
+from server.store.planning_request import check_frame
 from server.store.report import UNITS
 from solver.planner import PlanOptions
-from solver.planner.remedies import Remedy, offset, relax, slow_down
+from solver.planner.remedies import NOTHING, Remedy, offset, relax, slow_down
 from solver.rig import FRAMES, LIMITS, Rig
 
 RemedyKind = Literal["slow_down", "heading_offset", "mounting_offset", "relax"]
 KINDS: tuple[str, ...] = get_args(RemedyKind)
 Array = NDArray[np.float64]
-
-
-class NoRemedyError(StoreError):
-    """No single limit, raised, makes the flight fit."""
 
 
 @dataclass(frozen=True)
@@ -46,9 +43,10 @@ def find_remedy(
     """Search the remedy of that kind for time (n,) [s], attitude (n, 3, 3); with `relax`, of one frame or limit alone.
 
     `described`: kind, what, value, unit, statement, sufficient, alternatives. A remedy that does not suffice is
-    returned too, but for `relax`, which raises `NoRemedyError`. Raises `SolverError` for names that are none.
+    returned too, but for `relax`, which raises `NoRemedyError`. A flight that fits as it is is returned so, of every
+    kind. Raises `SolverError`, `StoreError` for names that are none.
     """
-    check_kind(kind, frame, limit)
+    check_kind(kind, frame, limit, rig)
     match kind:
         case "slow_down":
             found = [slow_down(time, attitude, rig, start, options, progress)]
@@ -72,6 +70,8 @@ def _described(kind: str, remedy: Remedy, rig: Rig) -> dict[str, Any]:
         said = "flown as it is" if value == 1.0 else f"flown {value:.4g} times as slow"
         return {"what": remedy.what, "value": value, "unit": "times", "statement": said}
     angle = math.degrees(value)
+    if remedy.what == NOTHING:
+        return {"what": NOTHING, "value": 0.0, "unit": "deg", "statement": "flown as it is: no limit need be raised"}
     if kind != "relax":
         whole = "the whole flight" if kind == "heading_offset" else "the payload in its mount"
         said = f"{whole} turned by {angle:.4g} deg of {remedy.what}" if value else f"{whole} as it is"
@@ -92,13 +92,15 @@ def _range(low: float, high: float) -> str:
     return f"{math.degrees(low):.4g}..{math.degrees(high):.4g}"
 
 
-def check_kind(kind: str, frame: str | None, limit: str | None) -> None:
-    """Raise `StoreError` for a kind that is none, or a frame or limit that is none or that the kind has no use for."""
+def check_kind(kind: str, frame: str | None, limit: str | None, rig: Rig) -> None:
+    """Raise `StoreError` for a kind that is none, or a frame or limit that is none or that the kind has no use for.
+
+    `InputError` for a frame that the rig has not.
+    """
     if kind not in KINDS:
         raise StoreError(f"remedy {kind!r}: expected one of {', '.join(KINDS)}")
     if kind != "relax" and (frame is not None or limit is not None):
         raise StoreError(f"remedy {kind} has no frame and no limit: they are for relax")
-    if frame is not None and frame not in FRAMES:
-        raise StoreError(f"frame {frame!r}: expected one of {', '.join(FRAMES)}")
+    check_frame(frame, rig)
     if limit is not None and limit not in LIMITS:
         raise StoreError(f"limit {limit!r}: expected one of {', '.join(LIMITS)}")

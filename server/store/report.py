@@ -5,19 +5,26 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solver.compare import EXACT_WITHIN
 from solver.rig import FRAMES, Rig
 from solver.solution import Solution, limited_name
 from solver.verify import Verification
 
 if TYPE_CHECKING:
-    from solver.planner.verdict import Margins  # the planner is heavy; who has margins has loaded it
+    from solver.planner import Plan  # the planner is heavy; who has a plan or margins has loaded it
+    from solver.planner.verdict import Margins
 
 # A report is read by people and sent over the wire: the list of violations is cut, their number is not.
 MOST_VIOLATIONS = 1000
 
 
 def make_report(solution: Solution, verification: Verification) -> dict[str, Any]:
-    """The report as JSON-ready values (no nan, no infinity). `feasible`: inside every limit, nothing limited."""
+    """The report as JSON-ready values (no nan, no infinity). `feasible`: inside every limit, nothing limited.
+
+    `feasible` does not say that the attitude is met: a method that knows no limits, or that drifts, may miss it with
+    nothing limited. `exact_samples` does.
+    """
+    exact = int(np.count_nonzero(solution.error <= EXACT_WITHIN))
     steps = solution.step_time[np.isfinite(solution.step_time)]
     blocking = solution.blocking
     return {
@@ -25,6 +32,8 @@ def make_report(solution: Solution, verification: Verification) -> dict[str, Any
         "rig": solution.rig.name,
         "samples": int(solution.time.size),
         "feasible": blocking is None and not solution.limited_samples and not verification.violations,
+        "exact_samples": exact,
+        "exact_percent": exact_percent(exact, int(solution.time.size)),
         "max_error_deg": _finite(math.degrees(verification.max_error)),
         "max_matrix_error": _finite(verification.max_matrix_error),
         "iterations": {"median": float(np.median(solution.iterations)), "max": int(np.max(solution.iterations))},
@@ -56,6 +65,40 @@ def make_report(solution: Solution, verification: Verification) -> dict[str, Any
         "blocking": None
         if blocking is None
         else {"time_s": float(blocking.time), "frame": blocking.frame, "limit": blocking.limit},
+    }
+
+
+def exact_percent(exact: int, samples: int) -> float:
+    """Per cent of the samples, in hundredths rounded down: never more than is so, and 100 only of all."""
+    return exact * 10_000 // samples / 100
+
+
+def exact_text(report: dict[str, Any]) -> str:
+    """The share of exact samples as every table has it: "100 %", "99.99 %", "< 0.01 %", "0 %"."""
+    percent: float = report["exact_percent"]
+    if report["exact_samples"] and not percent:
+        return "< 0.01 %"
+    return f"{percent:.0f} %" if percent in (0.0, 100.0) else f"{percent:.2f} %"
+
+
+def verdict_report(plan: "Plan") -> dict[str, Any]:
+    """`verdict`: what it rests on; `leads`: the ways from rest and to rest, or why there are none."""
+    solution, verdict = plan.solution, plan.verdict
+    first, last = (
+        float(np.diff(ends)[0]) if len(ends) == 2 else 0.0 for ends in (solution.time[:2], solution.time[-2:])
+    )
+    return {
+        "verdict": {
+            "decided_by": verdict.decided_by,
+            "statement": verdict.statement,
+            "grid_deg": _finite(math.degrees(verdict.grid)),
+            "max_matrix_error_between_samples": _finite(verdict.between),
+        },
+        "leads": {
+            "lead_in_s": len(plan.lead_in) * first,
+            "lead_out_s": len(plan.lead_out) * last,
+            "refusal": plan.lead_note or None,
+        },
     }
 
 
@@ -94,6 +137,17 @@ def why_infeasible(report: dict[str, Any]) -> str | None:
     return (
         f"at {first['time_s']:.3f} s the {first['frame']} frame exceeds its {first['limit']} limit "
         f"({first['value']:.4g} {UNITS[first['limit']]}); {report['limit_violation_samples']} such samples"
+    )
+
+
+def why_not_exact(report: dict[str, Any]) -> str | None:
+    """In one sentence how far and how often a flight misses the attitude; None where every sample is exact."""
+    missed = report["samples"] - report["exact_samples"]
+    if not missed:
+        return None
+    return (
+        f"{missed} of {report['samples']} samples miss the attitude by more than {math.degrees(EXACT_WITHIN):.0e} deg, "
+        f"up to {report['max_error_deg']:.3g} deg"
     )
 
 

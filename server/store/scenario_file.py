@@ -7,8 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from server.store.errors import FileError
+from server.store.rig_keys import is_number
+from solver.rig import builtin_rigs
 from solver.scenarios import Angle, Ramp, Scenario, Sine, Term
 
+MOST_SAMPLES = 4_000_000  # more than an hour at 1 kHz
 ANGLES = ("yaw", "pitch", "roll")
 _TOP = {"name", "about", "rig", "duration_s", "rate_hz", "jitter", "start_deg", "tilt_deg", *ANGLES}
 _TERMS: dict[str, tuple[str, ...]] = {
@@ -34,14 +37,17 @@ def parse_scenario(table: dict[str, Any], file: str) -> Scenario:
 
     def number(values: dict[str, Any], key: str, where: str, default: float | None) -> float:
         value = values.get(key, default)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        if not is_number(value):
             raise bad(where + key, value, "a finite number")
-        return float(value)
+        return float(value)  # type: ignore[arg-type]
 
     _only(table, _TOP, "", bad)
     for key in ("name", "about"):
         if not isinstance(table.get(key), str):
             raise bad(key, table.get(key), "a text")
+    rig = table.get("rig", "vertical-4")
+    if not isinstance(rig, str) or rig not in builtin_rigs():
+        raise bad("rig", rig, f"one of {', '.join(builtin_rigs())}")
     start = table.get("start_deg")
     if start is not None and not (isinstance(start, list) and len(start) == 4):
         raise bad("start_deg", start, "four angles, base first")
@@ -50,6 +56,10 @@ def parse_scenario(table: dict[str, Any], file: str) -> Scenario:
         value = number(table, key, "", default)
         if value < 0.0 or (key == "rate_hz" and value == 0.0):
             raise bad(key, value, "a number above zero")
+    duration, rate = number(table, "duration_s", "", 10.0), number(table, "rate_hz", "", 1000.0)
+    if duration * rate >= MOST_SAMPLES:
+        most = f"at most {MOST_SAMPLES / rate:.6g} s at {rate:.6g} Hz, that is {MOST_SAMPLES} samples"
+        raise bad("duration_s", duration, most)
     jitter = number(table, "jitter", "", 0.0)
     if not 0.0 <= jitter < 0.5:
         raise bad("jitter", jitter, "a number from 0 to below 0.5")
@@ -57,9 +67,9 @@ def parse_scenario(table: dict[str, Any], file: str) -> Scenario:
         name=table["name"],
         about=table["about"],
         **{name: _angle(table.get(name, {}), name, number, bad) for name in ANGLES},
-        rig=table.get("rig", "vertical-4"),
-        duration=number(table, "duration_s", "", 10.0),
-        rate=number(table, "rate_hz", "", 1000.0),
+        rig=rig,
+        duration=duration,
+        rate=rate,
         jitter=jitter,
         start=None if start is None else _start(start, number),
         tilt=math.radians(number(table, "tilt_deg", "", 0.0)),
@@ -109,11 +119,16 @@ def _angle(table: Any, name: str, number: Callable[..., float], bad: Callable[..
     if not isinstance(table, dict):
         raise bad(name, table, "a table")
     _only(table, {"constant_deg", "terms"}, f"{name}.", bad)
+    given = table.get("terms", [])
+    if not isinstance(given, list):
+        raise bad(f"{name}.terms", given, f"a list of tables, each [[{name}.terms]]")
     terms: list[Term] = []
-    for k, term in enumerate(table.get("terms", [])):
+    for k, term in enumerate(given):
         where = f"{name}.terms[{k}]."
+        if not isinstance(term, dict):
+            raise bad(where.rstrip("."), term, "a table with kind sine or ramp")
         kind = term.get("kind")
-        if kind not in _TERMS:
+        if not isinstance(kind, str) or kind not in _TERMS:
             raise bad(f"{where}kind", kind, "sine or ramp")
         _only(term, {"kind", *_TERMS[kind]}, where, bad)
         if kind == "sine":

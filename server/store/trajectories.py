@@ -1,6 +1,7 @@
 """Stored flights: rows in the database, arrays and the source file in trajectories/<sha256>/."""
 
 import shutil
+import threading
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -22,6 +23,7 @@ class TrajectoryStore:
     def __init__(self, database: Database, root: Path) -> None:
         self._database = database
         self._root = root
+        self._changing = threading.Lock()  # row and folder of a flight come and go together
         root.mkdir(parents=True, exist_ok=True)
         for left in root.glob(".new-*"):  # an add that a crash cut off
             shutil.rmtree(left)
@@ -30,37 +32,36 @@ class TrajectoryStore:
         self, trajectory: Trajectory, name: str, source: Path, source_sha256: str, source_format: str
     ) -> tuple[TrajectoryRow, bool]:
         """Store a flight and its source file, which is moved away. Returns its row and whether it is new."""
-        target = self._root / trajectory.sha256
+        draft = self._root / f".new-{uuid4().hex}"
         source_bytes = source.stat().st_size
-        new = not target.exists()
-        if new:
-            draft = self._root / f".new-{uuid4().hex}"
-            draft.mkdir()
-            try:
-                np.save(draft / "time.npy", trajectory.time)
-                np.save(draft / "q.npy", trajectory.q)
+        facts = _facts(trajectory)
+        draft.mkdir()
+        try:
+            np.save(draft / "time.npy", trajectory.time)
+            np.save(draft / "q.npy", trajectory.q)
+            with self._changing, self._database.begin() as session:
+                row = session.get(TrajectoryRow, trajectory.sha256)
+                if row is not None:
+                    return row, False
+                row = TrajectoryRow(
+                    sha256=trajectory.sha256,
+                    source_sha256=source_sha256,
+                    name=name,
+                    convention=trajectory.convention.value,
+                    source_format=source_format,
+                    source_bytes=source_bytes,
+                    warnings=[asdict(caution) for caution in trajectory.warnings],
+                    created=time.time(),
+                    **facts,
+                )
+                session.add(row)
                 shutil.move(source, draft / f"source.{source_format}")
+                target = self.folder(trajectory.sha256)
+                shutil.rmtree(target, ignore_errors=True)  # without a row it is what a crash left
                 draft.rename(target)
-            except BaseException:
-                shutil.rmtree(draft, ignore_errors=True)
-                raise
-        with self._database.begin() as session:
-            row = session.get(TrajectoryRow, trajectory.sha256)
-            if row is not None:
-                return row, False
-            row = TrajectoryRow(
-                sha256=trajectory.sha256,
-                source_sha256=source_sha256,
-                name=name,
-                convention=trajectory.convention.value,
-                source_format=source_format,
-                source_bytes=source_bytes,
-                warnings=[asdict(caution) for caution in trajectory.warnings],
-                created=time.time(),
-                **_facts(trajectory),
-            )
-            session.add(row)
-        return row, True
+            return row, True
+        finally:
+            shutil.rmtree(draft, ignore_errors=True)
 
     def get(self, sha256: str) -> TrajectoryRow:
         """The row. Raises `NotFoundError`."""
@@ -86,15 +87,16 @@ class TrajectoryStore:
 
     def remove(self, sha256: str) -> None:
         """Remove a flight. Raises `NotFoundError`, or `InUseError` where a plan is made from it."""
-        with self._database.begin() as session:
-            row = session.get(TrajectoryRow, sha256)
-            if row is None:
-                raise NotFoundError("trajectory", sha256)
-            plans = session.scalar(select(func.count()).where(PlanRow.trajectory == sha256)) or 0
-            if plans:
-                raise InUseError("trajectory", sha256, f"{plans} plan(s)")
-            session.delete(row)
-        shutil.rmtree(self._root / sha256)
+        with self._changing:
+            with self._database.begin() as session:
+                row = session.get(TrajectoryRow, sha256)
+                if row is None:
+                    raise NotFoundError("trajectory", sha256)
+                plans = session.scalar(select(func.count()).where(PlanRow.trajectory == sha256)) or 0
+                if plans:
+                    raise InUseError("trajectory", sha256, f"{plans} plan(s)")
+                session.delete(row)
+            shutil.rmtree(self.folder(sha256))
 
 
 def read_arrays(folder: Path) -> tuple[Array, Array]:

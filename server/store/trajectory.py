@@ -10,10 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from server.store.errors import FileError
-from solver.attitude import euler_from_ned, quaternion_from_euler, quaternion_from_ned
+from solver.attitude import (
+    dcm_from_quaternion,
+    euler_from_dcm,
+    euler_from_ned,
+    quaternion_from_euler,
+    quaternion_from_ned,
+)
+from solver.times import bad_time, shortest
 
 Array = NDArray[np.float64]
 QUATERNION = ("qw", "qx", "qy", "qz")
+_BLOCK = 65536  # samples converted at once
 
 
 class Convention(StrEnum):
@@ -95,7 +103,8 @@ def from_columns(
 ) -> Trajectory:
     """The flight of columns (n,) named by `column_names`. `line_of` gives the line of a row, for messages.
 
-    Raises `FileError`: no rows, a value that is not finite, time not increasing, a quaternion that is none.
+    Raises `FileError`: no rows, a value that is not finite, time not increasing or out of range, a quaternion that is
+    none.
     """
     names = tuple(columns)
     time = columns["time_s"]
@@ -103,19 +112,16 @@ def from_columns(
         raise FileError(file, "at least one row of samples after the header")
 
     def fail(row: int, column: str, expected: str, value: float) -> FileError:
-        return FileError(file, expected, line=line_of(row), column=column, value=f"{value:.17g}", unit=unit)
+        return FileError(file, expected, line=line_of(row), column=column, value=shortest(value), unit=unit)
 
     first_bad = [(int(np.argmin(ok)), name) for name in names if not (ok := np.isfinite(columns[name])).all()]
     if first_bad:
         row, name = min(first_bad)
         raise fail(row, name, "a finite number", columns[name][row])
+    if found := bad_time(time):
+        row, expected = found
+        raise fail(row, "time_s", expected, time[row])
     step = np.diff(time)
-    if not (step > 0.0).all():
-        row = int(np.argmin(step > 0.0)) + 1
-        before = f"{time[row - 1]:.17g}"
-        if step[row - 1] == 0.0:
-            raise fail(row, "time_s", f"a time after {before}, this one is there twice", time[row])
-        raise fail(row, "time_s", f"a time after {before}, time must not go backward", time[row])
 
     warnings: list[Caution] = []
     if names[1:] == QUATERNION:
@@ -132,6 +138,15 @@ def from_columns(
         text = f"the median step is {float(np.median(step)):.6g} s: is time_s in seconds?"
         warnings.append(Caution("time-unit", text))
     return Trajectory(np.array(time), continuous(q), convention, tuple(warnings))
+
+
+def euler_deg(q: Array) -> Array:
+    """Yaw, pitch, roll (n, 3) [deg] of q (n, 4), unwrapped. Of every sample: between sparse ones turns are lost."""
+    angles = np.empty((len(q), 3))
+    for begin in range(0, len(q), _BLOCK):  # 100 bytes a sample beside the result, otherwise
+        part = slice(begin, begin + _BLOCK)
+        angles[part] = np.stack(euler_from_dcm(dcm_from_quaternion(q[part])), axis=-1)
+    return np.asarray(np.rad2deg(np.unwrap(angles, axis=0)))
 
 
 def continuous(q: Array) -> Array:

@@ -19,6 +19,7 @@ from server.store.errors import FileError
 from server.store.trajectory import Array, Convention, Trajectory, column_names, from_columns
 
 PARQUET_MAGIC = b"PAR1"
+_HEADER_BYTES = 1_000_000
 
 
 def read_trajectory(path: Path, convention: Convention, name: str | None = None) -> Trajectory:
@@ -72,19 +73,24 @@ def _read_csv(path: Path, convention: Convention, file: str) -> Trajectory:
             raise FileError(file, "at least one row of samples after the header") from None
         raise _diagnose(path, file, header, wanted, str(error)) from None
     columns = {name: _array(table.column(name)) for name in wanted}
-    return from_columns(columns, convention, file, lambda row: _line_of(path, header, row))
+    return from_columns(columns, convention, file, lambda row: _line_of(path, file, header, row))
 
 
 def _header(path: Path, file: str) -> _Header:
     """The first line that is neither empty nor a # comment."""
     with path.open("rb") as stream:
-        for number, raw in enumerate(stream, start=1):
-            if len(raw) > 1_000_000:
+        for number, raw in enumerate(iter(lambda: stream.readline(_HEADER_BYTES + 1), b""), start=1):
+            if b"\r" in raw.rstrip(b"\r\n"):
+                raise FileError(file, "lines that end in LF or CR LF, not in CR alone", line=number)
+            if len(raw) > _HEADER_BYTES:
                 raise FileError(file, "a header of comma-separated column names", line=number)
             text = raw.decode("utf-8-sig" if number == 1 else "utf-8", errors="replace").strip()
             if not text or text.startswith("#"):
                 continue
-            names = [name.strip() for name in next(csv.reader([text]))]
+            try:
+                names = [name.strip() for name in next(csv.reader([text]))]
+            except csv.Error as error:
+                raise FileError(file, f"a header of comma-separated column names ({error})", line=number) from None
             if len(names) == 1 and (";" in text or "\t" in text):
                 raise FileError(file, "commas between the columns", line=number, value=text[:60])
             if all(_is_number(name) for name in names):
@@ -93,24 +99,28 @@ def _header(path: Path, file: str) -> _Header:
     raise FileError(file, "a header line and samples, the file is empty")
 
 
-def _rows(path: Path, header: _Header) -> Iterator[tuple[int, list[str]]]:
-    """(line, cells) of the rows Arrow counts: empty lines are none."""
+def _rows(path: Path, file: str, header: _Header) -> Iterator[tuple[int, list[str]]]:
+    """(line, cells) of the rows Arrow counts: empty lines are none. Raises `FileError` where `csv` gives up."""
     with path.open("r", encoding="utf-8", errors="replace", newline="") as stream:
         lines = itertools.islice(stream, header.lines, None)
         reader = csv.reader(lines)
-        for cells in reader:
-            if cells:
-                yield header.lines + reader.line_num, cells
+        try:
+            for cells in reader:
+                if cells:
+                    yield header.lines + reader.line_num, cells
+        except csv.Error as error:
+            expected = f"cells of at most {csv.field_size_limit()} characters ({error})"
+            raise FileError(file, expected, line=header.lines + reader.line_num) from None
 
 
-def _line_of(path: Path, header: _Header, row: int) -> int:
-    found = next(itertools.islice(_rows(path, header), row, None), None)
+def _line_of(path: Path, file: str, header: _Header, row: int) -> int:
+    found = next(itertools.islice(_rows(path, file, header), row, None), None)
     return header.lines + 1 + row if found is None else found[0]
 
 
 def _diagnose(path: Path, file: str, header: _Header, wanted: tuple[str, ...], reason: str) -> FileError:
     places = [(name, header.names.index(name)) for name in wanted]
-    for line, cells in _rows(path, header):
+    for line, cells in _rows(path, file, header):
         if len(cells) != len(header.names):
             expected = f"{len(header.names)} columns as in the header"
             return FileError(file, expected, line=line, value=f"{len(cells)} columns")
@@ -133,7 +143,7 @@ def _read_parquet(path: Path, convention: Convention, file: str) -> Trajectory:
                 if not (pa.types.is_floating(kind) or pa.types.is_integer(kind)):
                     raise FileError(file, "a column of numbers", column=name, value=str(kind))
             table = parquet.read(columns=list(wanted))
-    except (pa.ArrowInvalid, OSError) as error:
+    except (pa.ArrowException, UnicodeDecodeError, OSError) as error:  # a broken column name is not even text
         raise FileError(file, f"a whole Parquet file ({str(error).splitlines()[0][:200]})") from None
     columns = {}
     for name in wanted:
@@ -141,7 +151,8 @@ def _read_parquet(path: Path, convention: Convention, file: str) -> Trajectory:
         if column.null_count:
             row = int(np.argmax(column.is_null().to_numpy()))
             raise FileError(file, "a number", line=row + 1, column=name, value="null", unit="row")
-        columns[name] = _array(column.cast(pa.float64()))
+        # Not safe: an integer that no double has is rounded, as the same digits in CSV are.
+        columns[name] = _array(column.cast(pa.float64(), safe=False))
     return from_columns(columns, convention, file, lambda row: row + 1, unit="row")
 
 

@@ -5,8 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from server.rig_config import OWNER_SILENCE, SERVER_SILENCE, GuardConfig, MotionConfig, OperatingConfig, Tolerance
+from server.session.machine import SilencePolicy
 from server.settings import Settings
 from server.store.rig_file import read_rig
+from server.store.rig_operating import PROCESS, TOLERANCES
 from server.store.trajectory import QUATERNION, Convention
 from solver.method_options import method_names
 from solver.methods import METHODS
@@ -41,6 +44,38 @@ def test_rig_file_of_the_guide_is_read_as_told(tmp_path: Path) -> None:
     assert entry.rig.name == "bench-3"
     assert entry.rig.geometry == Geometry.VERTICAL_4
     assert entry.payload.size_m == (0.3, 0.2, 0.2)
+
+
+def test_how_the_rig_of_the_guide_is_operated_is_read_as_told(tmp_path: Path) -> None:
+    block = re.findall(r"```toml\n(.*?)```", (GUIDE / "rigs.md").read_text(), re.DOTALL)[1]
+    path = tmp_path / "bench.toml"
+    path.write_text(block)
+    assert read_rig(path).operating == OperatingConfig(
+        drive="udp",
+        drive_options={"host": "10.0.0.7", "port": 7450},
+        guard=GuardConfig(following_deg=Tolerance(0.5, 2.0), attitude_deg=Tolerance(None, 5.0)),
+        motion=MotionConfig(move_rate_deg_s=30.0),
+        server=SilencePolicy(1.0, 1.1, 60.0),
+        cpu=3,
+    )
+
+
+def test_rigs_page_has_every_key_of_how_a_rig_is_operated_and_its_default() -> None:
+    text = (GUIDE / "rigs.md").read_text()
+    rows = [
+        [cell.strip(" `") for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| `")
+    ]
+    told = {row[0]: row[1:] for row in rows}
+    for name in TOLERANCES:
+        level = getattr(GuardConfig(), name)
+        assert told[name][:2] == [str(level.warn), str(level.trip)], name
+    defaults = {f"motion.{name}": value for name, value in vars(MotionConfig()).items()}
+    defaults |= {f"process.{name}": getattr(OperatingConfig(), name) for name in PROCESS}
+    defaults |= {"guard.max_step_deg": GuardConfig().max_step_deg}
+    for name, value in defaults.items():
+        assert told[name][0] == ("none" if value is None else str(value)), name
+    for name, policy in (("[silence.owner]", OWNER_SILENCE), ("[silence.server]", SERVER_SILENCE)):
+        assert told[name][:3] == [str(policy.hold_s), str(policy.stop_s), str(policy.disarm_s)], name
 
 
 def test_rigs_page_has_the_built_in_limits_and_geometries() -> None:

@@ -117,13 +117,43 @@ def test_demo_flight_is_the_example_loop() -> None:
     assert (ROOT / "server/demo_flights/loop.csv").read_bytes() == (FOLDER / "loop.csv").read_bytes()
 
 
+def feasible(method: str, rig_name: str, name: str) -> bool:
+    """Whether a method flies a flight exactly and inside the limits."""
+    time, body = read(name)
+    rig, attitude = builtin_rigs()[rig_name], in_our_axes(body)
+    solution = solve(time, attitude, rig, method)
+    check = verify(time, solution.angles, rig, attitude)
+    return solution.limited_samples == 0 and check.max_matrix_error < 1e-13 and not check.violations
+
+
+@pytest.mark.parametrize("name", FLIGHTS)
+@pytest.mark.parametrize("rig", ["vertical-4", "horizontal-4"])
+@pytest.mark.parametrize("method", ["plan", "exact", "alm", "fixed_joint", "follow_up"])
+def test_these_methods_fly_all_of_them(method: str, rig: str, name: str) -> None:
+    """What the flights' README says; of preview too, which takes a minute a flight."""
+    assert feasible(method, rig, name)
+
+
+@pytest.mark.parametrize(
+    ("method", "rig", "name"),
+    [("dwln", "horizontal-4", "loop"), ("three_axis", "vertical-4", "loop"), ("clamped", "vertical-4", "split_s")],
+)
+def test_these_methods_do_not(method: str, rig: str, name: str) -> None:
+    assert not feasible(method, rig, name)
+
+
+def in_our_axes(body: Rotation) -> NDArray[np.float64]:
+    """C (n, 3, 3), body from reference, of the active body-from-NED rotation."""
+    change = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # ours from NED: north, up, east
+    return np.asarray(change @ body.as_matrix().transpose(0, 2, 1) @ change.T)
+
+
 @pytest.mark.parametrize("name", ["slow_roll", "split_s"])
 def test_rolls_need_the_planner_where_the_inner_frame_is_limited(name: str) -> None:
     """What the flights' README says of vertical-limited."""
     time, body = read(name)
     time, body = time[::2], body[::2]  # 100 Hz shows it as well
-    change = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # ours from NED: north, up, east
-    attitude = change @ body.as_matrix().transpose(0, 2, 1) @ change.T
+    attitude = in_our_axes(body)
     rig = builtin_rigs()["vertical-limited"]
     assert solve(time, attitude, rig, method="exact").limited_samples > 0
     planned = solve(time, attitude, rig, method="plan")

@@ -1,7 +1,6 @@
 """Comparisons: jobs that put methods side by side on one flight and rig."""
 
 import asyncio
-import math
 import time
 from datetime import UTC, datetime
 
@@ -10,10 +9,14 @@ from starlette.responses import FileResponse
 
 from server.api.problems import ApiError
 from server.api.services import Services, ServicesDep
-from server.api.wire_compare import CompareIn, ComparisonOut
+from server.api.wire_compare import CompareIn, ComparisonOut, MethodIn
 from server.api.wire_plans import ProgressOut
+from server.store.compare_length import check_length
 from server.store.comparisons import PAGE, UNFINISHED, CompareRequest, Comparison
-from solver.method_options import method_options
+from server.store.start_pose import start_pose
+from solver.compare import variants
+from solver.method_options import parse_variant, variant
+from solver.variant import Variant
 
 router = APIRouter(prefix="/compare", tags=["compare"])
 
@@ -21,21 +24,19 @@ router = APIRouter(prefix="/compare", tags=["compare"])
 @router.post("", status_code=202)
 async def add_comparison(body: CompareIn, response: Response, services: ServicesDep) -> ComparisonOut:
     """Ask for a comparison at the rig's own rate; poll it until its status is done, failed or cancelled."""
-    for method in body.methods:
-        method_options(method, {})
+    asked = variants([_variant(method) for method in body.methods])
     entry = await asyncio.to_thread(services.rigs.get, body.rig)
     trajectory = await asyncio.to_thread(services.trajectories.get, body.trajectory)
-    start = None
-    if body.start_deg is not None:
-        base, outer, middle, inner = map(math.radians, body.start_deg)
-        start = (base, outer, middle, inner)
+    rate_hz = services.settings.rig_rate_hz
+    check_length(trajectory.duration_s, rate_hz, len(asked))
+    start = None if body.start_deg is None else start_pose(body.start_deg, entry.rig, "start_deg")
     request = CompareRequest(
         trajectory_sha256=body.trajectory,
         trajectory=str(services.trajectories.folder(body.trajectory)),
         name=trajectory.name,
         rig=entry.rig,
-        methods=tuple(body.methods),
-        rate_hz=services.settings.rig_rate_hz,
+        methods=asked,
+        rate_hz=rate_hz,
         start=start,
         created=time.time(),
     )
@@ -75,6 +76,12 @@ async def remove_comparison(comparison: str, services: ServicesDep) -> None:
     await services.comparisons.remove(comparison)
 
 
+def _variant(method: str | MethodIn) -> Variant:
+    if isinstance(method, str):
+        return parse_variant(method)
+    return variant(method.method, method.options, method.label)
+
+
 def _out(services: Services, job: Comparison, *, with_report: bool) -> ComparisonOut:
     done = job.status == "done"
     return ComparisonOut.model_validate(
@@ -85,7 +92,7 @@ def _out(services: Services, job: Comparison, *, with_report: bool) -> Compariso
             "trajectory": job.request.trajectory_sha256,
             "trajectory_name": job.request.name,
             "rig": job.request.rig.name,
-            "methods": list(job.request.methods),
+            "methods": [one.label for one in job.request.methods],
             "rate_hz": job.request.rate_hz,
             "created_at": datetime.fromtimestamp(job.request.created, UTC),
             "error": job.error,

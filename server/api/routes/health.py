@@ -1,5 +1,6 @@
 """Health for people and load balancers, metrics for Prometheus."""
 
+import asyncio
 import time
 
 from fastapi import APIRouter, Response
@@ -18,7 +19,7 @@ async def health(services: ServicesDep) -> HealthOut:
     """How the server, its planner and its rigs do. Always 200: `status` and `warnings` say what is wrong."""
     settings = services.settings
     rigs = {host.name: health_out(host.snapshot().health) for host in services.hosts.all()}
-    wrong = _wrong(services)
+    wrong = _wrong(services) + [f"not a rig: {error}" for error in await asyncio.to_thread(services.rigs.broken)]
     return HealthOut(
         status="degraded" if wrong else "ok",
         version=VERSION,

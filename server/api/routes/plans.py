@@ -24,11 +24,14 @@ from server.api.wire_plans import (
 )
 from server.plan_folder import read_plan, rig_hash
 from server.store.errors import TransitionError
+from server.store.planning_request import check_frame
 from server.store.plans import UNFINISHED
+from server.store.start_pose import start_pose
 from server.store.tables import PlanRow
 from server.store.thin import thin
 from solver.method_options import PLAN_SOURCE, PREVIEW_SOURCE, method_options, option_defaults
 from solver.methods import METHODS
+from solver.resample import check_length
 from solver.rig import FRAMES
 from solver.solve import PLAN, PREVIEW
 
@@ -53,6 +56,10 @@ async def add_plan(body: PlanIn, response: Response, services: ServicesDep) -> P
     """Ask for a plan; poll it until its status is done, failed or cancelled."""
     entry = await asyncio.to_thread(services.rigs.get, body.rig)
     method_options(body.method, dict(body.options))
+    flight = await asyncio.to_thread(services.trajectories.get, body.trajectory)
+    check_length(flight.duration_s, services.settings.rig_rate_hz)
+    if body.start_deg is not None:
+        start_pose(body.start_deg, entry.rig, "start_deg")
     row = await asyncio.to_thread(
         services.plans.add,
         trajectory=body.trajectory,
@@ -89,6 +96,7 @@ async def add_remedy(plan: str, body: RemedyIn, response: Response, services: Se
     """
     of = await asyncio.to_thread(services.plans.get, plan)
     entry = await asyncio.to_thread(services.rigs.get, of.rig)
+    check_frame(body.frame, entry.rig)
     row = await asyncio.to_thread(
         services.plans.add,
         trajectory=of.trajectory,

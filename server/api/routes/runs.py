@@ -12,6 +12,7 @@ from starlette.responses import FileResponse
 from server.api.run_files import RunSummary, write_export
 from server.api.services import ServicesDep
 from server.api.wire_records import RunOut
+from server.runtime.replay import is_whole
 
 router = APIRouter(prefix="/runs", tags=["runs"])
 Format = Literal["csv", "parquet", "mcap"]
@@ -20,7 +21,7 @@ MEDIA_TYPES = {"csv": "text/csv", "parquet": "application/vnd.apache.parquet", "
 
 @router.get("")
 def list_runs(services: ServicesDep, rig: str | None = None) -> list[RunOut]:
-    """All runs, newest first."""
+    """All runs and incidents, newest first; a record that cannot be read is listed with its error."""
     return [_out(run) for run in services.runs.all(rig)]
 
 
@@ -38,9 +39,9 @@ def get_run(run: str, services: ServicesDep) -> RunOut:
 async def export_run(
     run: str, services: ServicesDep, kind: Annotated[Format, Query(alias="format")] = "csv"
 ) -> FileResponse:
-    """The whole run as a file: every sample of the record."""
+    """The whole run as a file: every sample of the record; as MCAP always with an index, repaired where need be."""
     record = services.runs.path(run)
-    if kind == "mcap":
+    if kind == "mcap" and await asyncio.to_thread(is_whole, record):
         return FileResponse(record, media_type=MEDIA_TYPES[kind], filename=record.name)
     folder = services.settings.data_dir / "exports"
     folder.mkdir(exist_ok=True)
@@ -58,6 +59,8 @@ def _out(run: RunSummary) -> RunOut:
     return RunOut(
         id=run.id,
         rig=run.rig,
+        incident=run.incident,
+        error=run.error,
         plan_id=run.plan_id,
         plan_hash=run.plan_hash,
         who=run.who,

@@ -21,8 +21,10 @@ from server.api.wire_session import (
     SessionOut,
 )
 from server.runtime.host import HostError, RefusedError, RigHost
-from server.runtime.wire import Reply
+from server.runtime.link import RequestTooLargeError
+from server.runtime.wire import ErrorBody, Reply
 from server.session.lease import LeaseToken as Token
+from server.session.states import Command, State
 
 router = APIRouter(prefix="/rigs/{rig}", tags=["session"])
 
@@ -51,12 +53,17 @@ async def command(rig: str, body: Annotated[CommandIn, Body()], services: Servic
     """Command the session. Needs the lease, but for stop and estop."""
     if body.command in ("stop", "estop"):
         return await _lane(services, rig, body.command, who)
-    host = await _host(services, rig)
+    host = services.hosts.get(rig)
+    if host is None:
+        raise await _refused_without_process(services, rig, body, who)
     args: dict[str, Any] = body.args.model_dump(exclude_none=True)
     if isinstance(body, Load):
         args = await _load_args(services, rig, body.args)
     token = None if body.lease is None else Token(body.lease.epoch, body.lease.sequence)
-    reply = await host.command(body.command, args, who, token)
+    try:
+        reply = await host.command(body.command, args, who, token)
+    except RequestTooLargeError as error:
+        raise ApiError(413, "too-large", str(error), command=body.command) from None
     await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
     return answer(body.command, reply)
 
@@ -106,8 +113,23 @@ async def _lease(services: Services, host: RigHost, action: str, who: str, to: s
     return lease_out(held)
 
 
+async def _refused_without_process(services: Services, rig: str, body: CommandIn, who: str) -> ApiError:
+    """Nobody holds the lease of a rig without a process: no command is started one for, taking the lease does that."""
+    await _known(services, rig)
+    state = State.DISCONNECTED
+    can = [str(Command.CONNECT)]
+    code, why = "lease_needed", "this command needs the lease: take it first"
+    if body.command not in can:
+        code, why = "illegal_command", f"{body.command} is not possible while {state}; allowed now: {', '.join(can)}"
+    reply = Reply(False, state, state, 0, ErrorBody(code, why, state, body.command, can))
+    await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    return refusal(reply)
+
+
 async def _known(services: Services, rig: str) -> None:
-    await asyncio.to_thread(services.rigs.get, rig)
+    """Raises `NotFoundError`; a rig that runs is known, whatever has become of its file."""
+    if services.hosts.get(rig) is None:
+        await asyncio.to_thread(services.rigs.get, rig)
 
 
 async def _host(services: Services, rig: str) -> RigHost:

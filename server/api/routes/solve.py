@@ -1,13 +1,13 @@
 """Solving without a session: POST /solve for a batch, the WebSocket /solve for a stream."""
 
 import asyncio
-import json
 import time
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from server.api.batch import attitudes, limited_list
 from server.api.problems import ApiError, problem_of
@@ -23,14 +23,16 @@ from server.api.wire_solve import (
     SolveProblem,
     SolveSamples,
 )
-from server.store.errors import NotFoundError
+from server.store.errors import StoreError
 from server.store.report import make_report
-from solver.errors import MethodError, SolverError
+from server.store.start_pose import start_pose
+from solver.errors import InputError, MethodError, SolverError
 from solver.method_options import method_options
 from solver.methods import METHODS
 from solver.methods.base import Stepper
 from solver.rig import Rig
-from solver.solve import check_flight, check_start, solve
+from solver.solve import check_flight, solve
+from solver.times import bad_time
 from solver.verify import attitude_errors, payload_attitudes, verify
 
 router = APIRouter(tags=["solve"])
@@ -56,7 +58,7 @@ def _solve(body: SolveIn, rig: Rig) -> SolveOut:
         rig,
         method=body.method,
         options=method_options(body.method, dict(body.options)),
-        start=None if body.start_deg is None else np.deg2rad(np.array(body.start_deg)),
+        start=None if body.start_deg is None else np.array(start_pose(body.start_deg, rig, "start_deg")),
         clock=time.perf_counter,
     )
     report = make_report(solution, verify(at, solution.angles, rig, C))
@@ -71,14 +73,20 @@ def _solve(body: SolveIn, rig: Rig) -> SolveOut:
 
 @router.websocket("/solve")
 async def solve_stream(socket: WebSocket, services: ServicesDep) -> None:
-    """`open` names rig and method; each `samples` is answered by a `solved` with the same number of rows."""
+    """`open` names rig and method; each `samples` is answered by a `solved` with the same number of rows.
+
+    What a client did wrong is answered by a problem and changes nothing; after a fault of the server's own the problem
+    is followed by a close, because the flight's state is not known any more.
+    """
     await socket.accept()
     flight: _Flight | None = None
     try:
         while True:
-            text = await socket.receive_text()
+            frame = await socket.receive()
+            if frame["type"] == "websocket.disconnect":
+                return
             try:
-                message = _INCOMING.validate_python(json.loads(text))
+                message = _parsed(frame)
                 if isinstance(message, OpenSolve):
                     flight = await asyncio.to_thread(_Flight, services, message)
                     answer: Any = Opened(rig=message.rig, method=message.method)
@@ -88,11 +96,23 @@ async def solve_stream(socket: WebSocket, services: ServicesDep) -> None:
                     answer = flight.solve(message)
                 else:
                     answer = await asyncio.to_thread(flight.solve, message)
-            except (ApiError, SolverError, NotFoundError, ValueError) as error:
-                answer = SolveProblem(problem=problem_of(_readable(error)))
+            except (ApiError, SolverError, StoreError, ValidationError) as error:
+                answer = SolveProblem(problem=problem_of(error))
+            except Exception as error:  # noqa: BLE001 - logged by problem_of; the client is not left without an answer
+                await socket.send_text(SolveProblem(problem=problem_of(error)).model_dump_json())
+                await socket.close(1011, "an error of the server")
+                return
             await socket.send_text(answer.model_dump_json())
     except WebSocketDisconnect:
         return
+
+
+def _parsed(frame: Mapping[str, Any]) -> OpenSolve | SolveSamples:
+    """The message of a text frame. Raises `ApiError` for a binary frame, `ValidationError`."""
+    text = frame.get("text")
+    if text is None:
+        raise ApiError(422, "validation", "expected a JSON message in a text frame, this one is binary")
+    return _INCOMING.validate_json(text)  # not json.loads: it gives up on deep nesting and long numbers in other ways
 
 
 class _Flight:
@@ -107,18 +127,18 @@ class _Flight:
         self._method = METHODS[message.method]
         options = method_options(message.method, dict(message.options))
         self._options = self._method.options() if options is None else options
-        start = None if message.start_deg is None else np.deg2rad(np.array(message.start_deg))
-        self._start = check_start(start, self._rig)
+        given = message.start_deg
+        self._start = None if given is None else np.array(start_pose(given, self._rig, "start_deg"))
         self._stepper: Stepper | None = None
-        self._last = -np.inf
+        self._last: float | None = None
 
     def solve(self, message: SolveSamples) -> Solved:
         """Angles and errors of the next samples."""
         if len(message.time_s) > self._most:
             raise ApiError(413, "too-large", f"{len(message.time_s)} samples in one message, at most {self._most}")
         at, C = check_flight(*attitudes(message))
-        if not at[0] > self._last:
-            raise ApiError(422, "solver-input", f"time_s[0] = {at[0]:.9g}: expected a time after {self._last:.9g}")
+        if found := bad_time(at, self._last):
+            raise InputError("time_s", found[0], float(at[found[0]]), found[1])
         if self._stepper is None:
             self._stepper = self._method.stepper(self._rig, self._options, self._start, C[0])
         block = self._stepper.block(at, C)
@@ -130,9 +150,3 @@ class _Flight:
             error_deg=np.rad2deg(error).tolist(),
             limited=limited_list(block.limited),
         )
-
-
-def _readable(error: Exception) -> Exception:
-    if isinstance(error, json.JSONDecodeError):
-        return ApiError(422, "validation", f"expected a JSON message: {error}")
-    return error

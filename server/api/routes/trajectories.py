@@ -19,9 +19,8 @@ from server.api.wire_trajectories import TrajectoryIn, TrajectoryOut, Trajectory
 from server.store.errors import InUseError
 from server.store.tables import TrajectoryRow
 from server.store.thin import thin
-from server.store.trajectory import Convention, Trajectory, from_columns
+from server.store.trajectory import Convention, Trajectory, euler_deg, from_columns
 from server.store.trajectory_file import read_trajectory, source_format
-from solver.attitude import dcm_from_quaternion, euler_from_dcm
 
 router = APIRouter(prefix="/trajectories", tags=["trajectories"])
 
@@ -91,8 +90,9 @@ def preview_trajectory(
 ) -> TrajectoryPreview:
     """The flight thinned to about `points` samples, for plots."""
     time_s, q = services.trajectories.arrays(sha256)
-    rows = thin(time_s.size, points, np.asarray(q))
-    yaw, pitch, roll = (np.rad2deg(np.unwrap(a)) for a in euler_from_dcm(dcm_from_quaternion(q[rows])))
+    euler = euler_deg(q)  # of all samples: between those that are kept, whole turns may be
+    rows = thin(time_s.size, points, euler)
+    yaw, pitch, roll = euler[rows].T
     return TrajectoryPreview.model_construct(
         sha256=sha256,
         samples=int(time_s.size),

@@ -120,6 +120,22 @@ def test_what_cannot_be_planned(server: LiveServer) -> None:
         assert server.http.post("/plans", json=good | change).status_code == status, change
 
 
+def test_a_rig_file_that_is_none_is_told_and_takes_no_other_rig_down(server: LiveServer) -> None:
+    file = server.settings.data_dir / "rigs" / "bad.toml"
+    file.write_text('name = "bad"\ngeometry = "vertical-9"\n')
+    try:
+        health = server.http.get("/health").json()
+        assert health["status"] == "degraded"
+        (told,) = [word for word in health["warnings"] if "bad.toml" in word]
+        assert "geometry" in told
+        assert "vertical-4" in [rig["name"] for rig in server.http.get("/rigs").json()]
+        assert server.http.get("/rigs/vertical-4/session").status_code == 200
+        assert server.http.get("/rigs/bad").status_code == 422
+    finally:
+        file.unlink()
+    assert server.http.get("/rigs/bad").status_code == 404
+
+
 def test_the_scene_is_served_through_the_same_port(server: LiveServer) -> None:
     page = httpx.get(f"{server.url}/scene/vertical-4/", timeout=60.0)
     assert page.status_code == 200

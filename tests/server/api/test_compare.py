@@ -1,9 +1,12 @@
 """Comparisons over HTTP."""
 
+import json
+import shutil
 import time
 from pathlib import Path
 from typing import Any
 
+from server.api.wire_compare import ComparisonReportOut
 from server.store.comparisons import Comparisons
 from tests.server.api.live_server import LiveServer
 
@@ -48,6 +51,81 @@ def test_a_method_that_does_not_apply_is_told_apart(server: LiveServer) -> None:
     assert job["status"] == "done"
     assert "fourth axis" in job["report"]["methods"][1]["refusal"]
     assert "base" not in {frame for frame, peak in job["report"]["methods"][0]["peak"].items() if peak}
+
+
+def test_variants_have_labels_of_their_own(server: LiveServer) -> None:
+    asked: list[Any] = [
+        "exact",
+        "alm:mode=open_loop",
+        {"method": "alm", "options": {"mode": "closed_loop", "growth": 4}},
+        {"method": "alm", "options": {"mode": "exact"}, "label": "the paper's"},
+    ]
+    job = finished(server, ask(server, methods=asked))
+    assert job["status"] == "done", job["error"]
+    labels = ["exact", "alm:mode=open_loop", "alm:mode=closed_loop:growth=4", "the paper's"]
+    assert job["methods"] == labels
+    rows = job["report"]["methods"]
+    assert [row["label"] for row in rows] == labels
+    assert [row["method"] for row in rows] == ["exact", "alm", "alm", "alm"]
+    assert rows[2]["options"] == {"mode": "closed_loop", "growth": 4}
+    # What issue 3 wants of every method, and the share as every table shows it.
+    for row in rows:
+        assert row["max_matrix_error"] >= 0.0
+        assert row["limited_samples"] == 0
+        assert (
+            set(row["total_variation_deg"])
+            == set(row["limit_violation_counts"])
+            == {"base", "outer", "middle", "inner"}
+        )
+        assert set(row["limit_violation_counts"]["base"]) == {"position", "rate", "acceleration"}
+        assert 100.0 * row["exact_share"] - 0.01 < row["exact_percent"] <= 100.0 * row["exact_share"]
+    assert all(
+        label.replace("'", "&#x27;") in server.http.get(job["page"].removeprefix("/api/v1")).text for label in labels
+    )
+
+
+def test_where_no_method_applies_the_job_fails_with_the_reasons(server: LiveServer) -> None:
+    job = finished(server, ask(server, rig="vertical-3", methods=["alm", "exact"]))
+    assert (job["status"], job["error"]["code"]) == ("failed", "method")
+    assert "alm needs the fourth axis" in job["error"]["message"]
+
+
+def test_what_cannot_be_compared_is_refused_at_once(server: LiveServer) -> None:
+    sha256 = server.upload().json()["sha256"]
+    body = {"trajectory": sha256, "rig": "vertical-limited", "methods": ["exact"]}
+    sparse = server.upload("time_s,yaw_deg,pitch_deg,roll_deg\n0,0,0,0\n200000,1,0,0\n").json()["sha256"]
+    for changes, told in (
+        ({"start_deg": [0, 0, 0, 70]}, "start_deg[3] (inner): 70.0: expected -60 to 60 deg"),
+        ({"start_deg": [1e7, 0, 0, 0]}, "start_deg[0] (base)"),
+        ({"methods": ["exact", "exact"]}, "2 methods are called 'exact'"),
+        ({"methods": ["alm", {"method": "exact", "label": "alm"}]}, "2 methods are called 'alm'"),
+        ({"methods": [{"method": "alm", "options": {"speed": 1}}]}, "no option 'speed'"),
+        ({"trajectory": sparse}, "200000.0: expected at most 24000 s at 500 Hz"),
+    ):
+        answer = server.http.post("/compare", json={**body, **changes})
+        assert answer.status_code == 422, (changes, answer.text)
+        assert told in answer.json()["detail"]
+
+
+def test_a_report_of_an_earlier_server_is_read(server: LiveServer) -> None:
+    job = finished(server, ask(server, methods=["exact"]))
+    root = server.settings.data_dir / "comparisons"
+    old = root / "00000000feedbeef"
+    shutil.copytree(root / job["id"], old)
+    for name in ("request.json", "report.json"):
+        table = json.loads((old / name).read_text(encoding="utf-8"))
+        if name == "request.json":
+            table["methods"] = ["exact"]
+        else:
+            for row in table["methods"]:
+                for key in ("label", "options", "exact_samples", "exact_percent"):
+                    del row[key]
+        (old / name).write_text(json.dumps(table), encoding="utf-8")
+    again = Comparisons(root)
+    assert [variant.label for variant in again.get("00000000feedbeef").request.methods] == ["exact"]
+    report = again.report("00000000feedbeef")
+    assert ComparisonReportOut.model_validate(report).methods[0].label == "exact"
+    shutil.rmtree(old)
 
 
 def test_refusals(server: LiveServer) -> None:

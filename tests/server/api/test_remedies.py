@@ -95,7 +95,7 @@ def test_where_no_limit_alone_is_enough_the_job_fails_with_the_reason(
 ) -> None:
     made = ended(server, asked(server, infeasible["id"], kind="relax", frame="outer", limit="acceleration")["id"])
     assert made["status"] == "failed"
-    assert made["error"]["code"] == "NoRemedyError"
+    assert made["error"]["code"] == "no-remedy"
     assert "outer acceleration" in made["error"]["message"]
 
 
@@ -111,6 +111,33 @@ def test_a_search_is_cancelled_at_once(server: LiveServer, infeasible: dict[str,
     assert server.http.delete(f"/plans/{job}").status_code == 204
     assert ended(server, job)["status"] == "cancelled"
     assert time.monotonic() - begun < 5.0
+
+
+def test_a_flight_that_fits_needs_no_limit_raised(server: LiveServer) -> None:
+    plan = server.plan(method="plan")
+    assert plan["report"]["verdict"]["decided_by"] == "checked"
+    assert plan["report"]["verdict"]["statement"] == plan["verdict"]
+    assert plan["report"]["leads"]["lead_in_s"] == pytest.approx(plan["lead_in_s"])
+    made = ended(server, asked(server, plan["id"], kind="relax")["id"])
+    assert (made["status"], made["flyable"]) == ("done", True), (made["error"], made["refusal"])
+    assert made["remedy"]["sufficient"] is True
+    assert made["remedy"]["change"]["what"] == "nothing"
+    assert made["remedy"]["change"]["statement"] == "flown as it is: no limit need be raised"
+
+
+def test_a_frame_that_the_rig_has_not_is_refused_at_once(server: LiveServer) -> None:
+    plan = server.plan("vertical-3", "three_axis")
+    answer = server.http.post(f"/plans/{plan['id']}/remedies", json={"kind": "relax", "frame": "base"})
+    assert answer.status_code == 422
+    assert "vertical-3 has no base frame" in answer.json()["detail"]
+
+
+def test_a_start_outside_the_range_is_refused_at_once(server: LiveServer) -> None:
+    sha256 = server.upload().json()["sha256"]
+    body = {"trajectory": sha256, "rig": "vertical-limited", "start_deg": [0, 0, 0, 70]}
+    answer = server.http.post("/plans", json=body)
+    assert answer.status_code == 422
+    assert "start_deg[3] (inner): 70.0: expected -60 to 60 deg" in answer.json()["detail"]
 
 
 def test_what_cannot_be_asked(server: LiveServer, infeasible: dict[str, Any]) -> None:

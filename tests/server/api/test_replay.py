@@ -179,7 +179,10 @@ def test_the_clock_of_a_replay(server: LiveServer, run: str) -> None:
     for wrong in (-1e-9, playback.duration_s + 1e-6, float("nan")):
         with pytest.raises(PlaybackError):
             playback.seek(wrong)
-    assert playback.rate_hz == pytest.approx(server.settings.rig_rate_hz, rel=0.05)
+    rows = rows_of(server, run)  # a starved machine misses ticks
+    ticks = int(rows["tick"][-1]) - int(rows["tick"][0])
+    assert playback.rate_hz == pytest.approx(ticks / playback.duration_s)
+    assert playback.rate_hz <= 1.05 * server.settings.rig_rate_hz
 
 
 def test_so_many_records_are_played_at_once_and_no_more(server: LiveServer, run: str) -> None:

@@ -24,6 +24,15 @@ def test_a_rig_without_a_process_is_disconnected_and_says_what_can_be_done(serve
         False,
     )
     assert refused(server.http.post("/rigs/horizontal-4/stop"))["allowed"] == ["connect"]
+    # Refused without starting one.
+    for word, status, code in (("arm", 409, "illegal-command"), ("connect", 403, "lease-needed")):
+        body = refused(server.http.post("/rigs/horizontal-4/commands", json={"command": word}), status)
+        assert body["type"].endswith(code)
+        assert (body["state"], body["allowed"]) == ("disconnected", ["connect"])
+    assert "horizontal-4" not in server.http.get("/health").json()["rigs"]
+    assert [line["accepted"] for line in server.http.get("/audit", params={"rig": "horizontal-4"}).json()] == [
+        False
+    ] * 2
     assert refused(server.http.get("/rigs/nowhere/session"), 404)["type"].endswith("not-found")
 
 
@@ -90,6 +99,53 @@ def test_without_the_lease_only_stop_and_estop(operator: Operator, server: LiveS
     assert operator.command("reset").json()["state_after"] == "idle"
 
 
+def test_the_greatest_sequence_is_done_audited_and_the_last_of_its_epoch(
+    operator: Operator, server: LiveServer
+) -> None:
+    operator.sequence = 2**63 - 2
+    assert operator.command("acknowledge").status_code == 200
+    line = server.http.get("/audit", params={"limit": 1}).json()[0]
+    assert (line["command"], line["accepted"], line["lease_sequence"]) == ("acknowledge", True, 2**63 - 1)
+    assert refused(operator.command("acknowledge"), 422)["errors"][0]["where"].endswith("lease.sequence")
+    assert server.http.delete("/rigs/vertical-4/lease").json()["sequence"] == 0
+
+
+def test_a_late_a_doubled_and_a_former_holder_s_command_are_refused_and_audited(
+    operator: Operator, server: LiveServer
+) -> None:
+    def sent(epoch: int, sequence: int) -> Any:
+        body = {"command": "acknowledge", "lease": {"epoch": epoch, "sequence": sequence}}
+        return server.http.post("/rigs/vertical-4/commands", json=body)
+
+    former = operator.epoch
+    server.http.delete("/rigs/vertical-4/lease")
+    operator.take()
+    assert operator.epoch > former
+    newest = operator.sequence + 5
+    assert sent(operator.epoch, newest).status_code == 200
+    assert refused(sent(operator.epoch, newest), 409)["type"].endswith("stale-command")
+    assert refused(sent(operator.epoch, newest - 1), 409)["type"].endswith("stale-command")
+    assert refused(sent(former, newest + 1), 403)["type"].endswith("lease-lost")
+    lines = server.http.get("/audit", params={"limit": 3}).json()
+    assert [(line["accepted"], line["lease_epoch"], line["lease_sequence"]) for line in lines] == [
+        (False, former, newest + 1),
+        (False, operator.epoch, newest - 1),
+        (False, operator.epoch, newest),
+    ]
+    operator.sequence = newest
+
+
+def test_a_command_that_the_rig_process_would_not_read_whole_is_refused_unsent(
+    operator: Operator, server: LiveServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as small:
+        small.setattr("server.runtime.link.MAX_REQUEST", 200)
+        body = refused(operator.command("load", live={"options": {f"option_{k}": 1 for k in range(20)}}), 413)
+    assert body["type"].endswith("too-large")
+    assert "at most 200" in body["detail"]
+    assert operator.command("acknowledge").status_code == 200  # over the same link
+
+
 def test_stop_brakes_a_move_and_estop_latches(operator: Operator, server: LiveServer) -> None:
     operator.command("load", plan=server.plan()["id"])
     operator.command("arm")
@@ -126,7 +182,15 @@ def test_load_takes_only_flyable_plans_of_this_rig(operator: Operator, server: L
         {"command": "load", "args": {"plan": 1}},
         {"command": "move", "args": {"target_deg": [1, 2, 3]}},
         {"command": "arm", "args": {"speed": 1}},
+        {"command": "arm", "args": {"plan_hash": "0" * 65}},
         {"command": "arm", "lease": {"epoch": -1, "sequence": 0}},
+        {"command": "arm", "lease": {"epoch": 2**63, "sequence": 0}},
+        {"command": "arm", "lease": {"epoch": 0, "sequence": 2**63}},
+        {"command": "arm", "lease": {"epoch": 0, "sequence": 2**70}},
+        {"command": "acknowledge", "args": {"numbers": [2**63]}},
+        {"command": "acknowledge", "args": {"numbers": list(range(257))}},
+        {"command": "load", "args": {"live": {"options": {f"option_{k}": 1 for k in range(8000)}}}},
+        {"command": "load", "args": {"live": {"options": {"weight": "x" * 65}}}},
         {},
         [],
     ],

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from websockets.exceptions import ConnectionClosedError
 from websockets.sync.client import ClientConnection, connect
 
 from tests.server.api.live_server import LiveServer
@@ -53,6 +54,8 @@ def test_limits_are_named_sample_by_sample(server: LiveServer) -> None:
         ({"method": "magic"}, 422),
         ({"options": {"nonsense": 1}}, 422),
         ({"time_s": [0.0, 0.0]}, 422),
+        ({"time_s": [0.0, 1e-300]}, 422),
+        ({"time_s": [-1e308, 1.5e308]}, 422),
         ({"q": [[0, 0, 0, 0], [1, 0, 0, 0]]}, 422),
         ({"q": [[1, 0, 0, 0]]}, 422),
         ({"euler_deg": [[0, 0, 0], [0, 0, 0]]}, 422),
@@ -102,3 +105,65 @@ def test_a_refused_message_leaves_the_flight_as_it_was(server: LiveServer) -> No
         assert "after" in exchange(stream, one)["problem"]["detail"]
         assert exchange(stream, one | {"time_s": [0.01], "q": [[0, 0, 0, 0]]})["type"] == "problem"
         assert exchange(stream, one | {"time_s": [0.01]})["type"] == "solved"
+
+
+OPEN = {"type": "open", "rig": "vertical-4"}
+ONE = {"type": "samples", "time_s": [0.0], "q": [[1, 0, 0, 0]]}
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        b"\x00\x01",
+        "[" * 200_000,
+        '{"type": "samples", "q": [[1, 0, 0, 0]], "time_s": [' + "1" * 5000 + "]}",
+        '{"type": "samples", "q": [[1, 0, 0, 0]], "time_s": [NaN]}',
+        "",
+        "null",
+    ],
+)
+def test_every_message_that_is_none_has_an_answer_and_changes_nothing(server: LiveServer, message: str | bytes) -> None:
+    with connect(f"{server.ws}/solve", proxy=None) as stream:
+        assert exchange(stream, OPEN)["type"] == "opened"
+        stream.send(message)
+        answer = json.loads(stream.recv(timeout=30.0))
+        assert answer["problem"]["status"] == 422, answer
+        assert exchange(stream, ONE)["type"] == "solved"
+
+
+@pytest.mark.parametrize("times", [[1e-300], [1e308], [-1.0], [0.0], [0.1, 0.1 + 1e-12]])
+def test_times_beyond_reason_are_refused_and_do_not_spoil_the_flight(server: LiveServer, times: list[float]) -> None:
+    with connect(f"{server.ws}/solve", proxy=None) as stream:
+        exchange(stream, OPEN)
+        assert exchange(stream, ONE)["type"] == "solved"
+        refused = exchange(stream, ONE | {"time_s": times, "q": [[1, 0, 0, 0]] * len(times)})
+        assert refused["problem"]["status"] == 422
+        assert "expected" in refused["problem"]["detail"]
+        assert exchange(stream, ONE | {"time_s": [0.01]})["angles_deg"] == [[0.0] * 4]
+
+
+def test_a_rig_file_that_is_broken_is_a_problem_and_the_stream_goes_on(server: LiveServer) -> None:
+    broken = server.settings.data_dir / "rigs" / "broken.toml"
+    with connect(f"{server.ws}/solve", proxy=None) as stream:
+        broken.write_text("name = 1")
+        try:
+            assert exchange(stream, OPEN | {"rig": "broken"})["problem"]["type"].endswith(":file")
+        finally:
+            broken.unlink()
+        assert exchange(stream, OPEN)["type"] == "opened"
+
+
+def test_a_fault_of_the_servers_own_is_told_and_the_stream_is_closed(
+    server: LiveServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("a fault")
+
+    with connect(f"{server.ws}/solve", proxy=None) as stream:
+        exchange(stream, OPEN)
+        monkeypatch.setattr("server.api.routes.solve.attitude_errors", fail)
+        assert exchange(stream, ONE)["problem"]["type"].endswith(":internal")
+        with pytest.raises(ConnectionClosedError) as closed:
+            stream.recv(timeout=30.0)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1011

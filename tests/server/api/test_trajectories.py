@@ -2,6 +2,7 @@
 
 import io
 import socket
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pyarrow as pa
@@ -144,3 +145,34 @@ def test_an_upload_that_turns_out_too_large_is_refused_while_it_comes(server: Li
 def test_a_flight_in_use_cannot_be_removed(server: LiveServer) -> None:
     plan = server.plan()
     problem(server.http.delete(f"/trajectories/{plan['trajectory']}"), 409, "in-use")
+
+
+@pytest.mark.parametrize("kind", ["file", "json"])
+def test_one_flight_uploaded_by_many_at_once_is_stored_once(server: LiveServer, kind: str) -> None:
+    with ThreadPoolExecutor(6) as pool:
+        for turn in range(5):
+            columns = {"time_s": [0.0, 0.1, 0.2], "yaw_deg": [10.0, 11.0, 12.0 + turn]}
+            columns |= {"pitch_deg": [1.0, 2.0, 3.0], "roll_deg": [0.0, 0.0, 1.0 if kind == "file" else 2.0]}
+            rows = zip(*columns.values(), strict=True)
+            text = ",".join(columns) + "\n" + "".join(",".join(map(str, row)) + "\n" for row in rows)
+
+            def post(_: int, text: str = text, columns: dict[str, Any] = columns) -> Any:
+                if kind == "file":
+                    return server.upload(text)
+                return server.http.post("/trajectories", json={"name": "f"} | columns)
+
+            answers = list(pool.map(post, range(6)))
+            assert sorted(answer.status_code for answer in answers) == [200] * 5 + [201], answers[0].text
+            assert len({answer.json()["sha256"] for answer in answers}) == 1
+
+
+def test_a_preview_counts_the_turns_between_the_samples_it_keeps(server: LiveServer) -> None:
+    time_s = [k / 50 for k in range(3000)]
+    roll = [720.0 * at for at in time_s]
+    text = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{t},0,0,{r}\n" for t, r in zip(time_s, roll, strict=True))
+    sha256 = server.upload(text).json()["sha256"]
+    for points in (20, 200):
+        preview = server.http.get(f"/trajectories/{sha256}/preview", params={"points": points}).json()
+        assert len(preview["time_s"]) <= points + 7
+        assert preview["roll_deg"] == pytest.approx([720.0 * at for at in preview["time_s"]], abs=1e-6)
+        assert preview["roll_deg"][-1] == pytest.approx(roll[-1])

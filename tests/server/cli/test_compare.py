@@ -1,6 +1,7 @@
 """`fullpose compare`."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from typer.testing import CliRunner
 
 from server.cli import build
 from server.store.errors import FileError
-from solver.errors import MethodError
+from solver.errors import InputError, MethodError
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "scenarios"
 FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 100},{k},{k / 2},0\n" for k in range(40))
@@ -44,6 +45,41 @@ def test_a_scenario_file_is_a_flight() -> None:
     assert "fourth axis" in output
 
 
+def test_variants_of_a_method(flight: Path, tmp_path: Path) -> None:
+    report = tmp_path / "r.json"
+    code, output, _ = run(
+        flight, "--rig", "vertical-4", "--methods", "alm:mode=open_loop:growth=4, alm", "--report", report
+    )
+    assert code == 0, output
+    assert re.findall(r"^alm\S*", output, re.MULTILINE) == ["alm:mode=open_loop:growth=4", "alm"]
+    rows = json.loads(report.read_text())["methods"]
+    assert rows[0]["options"] == {"mode": "open_loop", "growth": 4.0}
+    for wrong, told in (
+        ("alm,alm", "label of its own"),
+        ("alm:mode=sideways", "sideways"),
+        ("alm:speed=3", "no option 'speed'"),
+        ("alm:", "name=value"),
+        (":growth=4", "no method named ''"),
+    ):
+        _, _, error = run(flight, "--rig", "vertical-4", "--methods", wrong)
+        assert isinstance(error, MethodError)
+        assert told in str(error)
+
+
+def test_where_every_method_is_refused_nothing_is_written(flight: Path, tmp_path: Path) -> None:
+    report = tmp_path / "r.json"
+    _, _, error = run(flight, "--rig", "vertical-3", "--methods", "alm,exact", "--report", report)
+    assert isinstance(error, MethodError)
+    assert "no method that is asked for applies to vertical-3" in str(error)
+    assert not report.exists()
+
+
+def test_a_rate_that_makes_too_many_samples(flight: Path) -> None:
+    _, _, error = run(flight, "--rig", "vertical-4", "--methods", "exact", "--rate", "1e9")
+    assert isinstance(error, InputError)
+    assert "at most 0.012 s at 1e+09 Hz" in str(error)
+
+
 def test_a_rate_is_said(flight: Path) -> None:
     code, output, _ = run(flight, "--rig", "vertical-4", "--methods", "exact", "--rate", "500")
     assert code == 0, output
@@ -57,6 +93,6 @@ def test_bad_input_writes_nothing(flight: Path, tmp_path: Path) -> None:
     flight.write_text("time_s,yaw_deg,pitch_deg,roll_deg\n0,0,0,x\n", encoding="utf-8")
     _, _, error = run(flight, "--rig", "vertical-4", "--methods", "exact", "--report", report)
     assert isinstance(error, FileError)
-    code, _, _ = run(flight, "--rig", "vertical-4", "--methods", " ", "--report", report)
-    assert code == 2
+    _, _, error = run(flight, "--rig", "vertical-4", "--methods", " ", "--report", report)
+    assert isinstance(error, MethodError)
     assert not report.exists()

@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from server.store import compare_length
 from server.store.compare_page import beyond_limits
 from server.store.comparison import Comparison, make_comparison
+from server.store.report import exact_percent, exact_text
 from solver.attitude import dcm_from_quaternion
-from solver.errors import MethodError
+from solver.errors import InputError, MethodError
+from solver.method_options import variant
 from solver.rig import FRAMES, builtin_rigs
 from solver.scenarios import SCENARIOS
 from solver.solve import solve
@@ -101,9 +104,64 @@ def test_a_method_that_does_not_apply_has_a_row() -> None:
     made = make_comparison("two", scenario.time, scenario.quaternion, RIGS["vertical-3"], ["dwln", "three_axis"])
     assert "fourth axis" in made.report["methods"][0]["refusal"]
     assert "fourth axis" in made.page
-    only = make_comparison("two", scenario.time, scenario.quaternion, RIGS["vertical-3"], ["dwln"])
-    assert only.report["samples"] == 0
-    assert page_data(only.page)["methods"] == []
+    assert made.report["samples"] == 2
+    assert [method["name"] for method in page_data(made.page)["methods"]] == ["three_axis"]
+
+
+def test_where_no_method_applies_nothing_is_compared() -> None:
+    scenario = SCENARIOS["two_samples"]
+    with pytest.raises(MethodError, match=r"alm needs the fourth axis.*exact needs the fourth axis"):
+        make_comparison("two", scenario.time, scenario.quaternion, RIGS["vertical-3"], ["alm", "exact"])
+
+
+def test_variants_have_rows_curves_and_colours_of_their_own() -> None:
+    scenario = replace(SCENARIOS["small_angles"], duration=0.2)
+    asked = ["alm:mode=open_loop", variant("alm", {"mode": "closed_loop"}, "<closed>"), "alm"]
+    made = make_comparison("small", scenario.time, scenario.quaternion, RIGS["vertical-4"], asked)
+    labels = ["alm:mode=open_loop", "<closed>", "alm"]
+    assert [row["label"] for row in made.report["methods"]] == labels
+    assert [row["method"] for row in made.report["methods"]] == ["alm"] * 3
+    assert [row["options"] for row in made.report["methods"]] == [{"mode": "open_loop"}, {"mode": "closed_loop"}, {}]
+    curves = page_data(made.page)["methods"]
+    assert [curve["name"] for curve in curves] == labels
+    assert len({curve["colour"] for curve in curves}) == 3
+    assert "&lt;closed&gt;</th>" in made.page or "&lt;closed&gt; <small" in made.page
+
+
+def test_too_many_samples_are_refused_before_they_are_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    scenario = SCENARIOS["two_samples"]
+    flight = ("sparse", np.array([0.0, 200_000.0]), scenario.quaternion, RIGS["vertical-4"])
+    with pytest.raises(InputError, match=r"200000.*at most 12000 s at 1000 Hz.*12000000 samples$"):
+        make_comparison(*flight, ["exact"], rate_hz=1000.0)
+    with pytest.raises(InputError, match="at most 6 s at 1e"):
+        make_comparison(*flight, ["exact", "alm"], rate_hz=1e6)
+    with pytest.raises(InputError, match="rate_hz"):
+        make_comparison(*flight, ["exact"], rate_hz=float("nan"))
+    monkeypatch.setattr(compare_length, "MOST_SAMPLES", 3)
+    with pytest.raises(InputError, match="at most 1 samples with 2 methods side by side"):
+        make_comparison("two", scenario.time, scenario.quaternion, RIGS["vertical-4"], ["exact", "alm"])
+
+
+@pytest.mark.parametrize(
+    ("exact", "samples", "text"),
+    [
+        (0, 7, "0 %"),
+        (1, 20_000, "< 0.01 %"),
+        (13, 4000, "0.32 %"),  # 0.325 %: a tie, which two languages round to either side
+        (1, 800, "0.12 %"),
+        (19_999, 20_000, "99.99 %"),
+        (7, 7, "100 %"),
+    ],
+)
+def test_a_share_is_rounded_once_and_down(exact: int, samples: int, text: str) -> None:
+    percent = exact_percent(exact, samples)
+    assert exact_text({"exact_samples": exact, "exact_percent": percent}) == text
+
+
+def test_report_table_and_share_agree(made: Comparison) -> None:
+    for method in made.report["methods"]:
+        assert method["exact_samples"] == round(method["exact_share"] * method["samples"])
+        assert exact_text(method).replace("<", "&lt;") in made.page
 
 
 def test_unknown_methods_are_refused() -> None:

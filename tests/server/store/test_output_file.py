@@ -1,6 +1,8 @@
 """What is written: columns, digits, and nothing at all where it goes wrong."""
 
 import csv
+import os
+import stat
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from server.store.errors import FileError
-from server.store.output_file import COLUMNS, check_writable, replacing, write_solution
+from server.store.output_file import COLUMNS, check_apart, check_writable, replacing, write_solution, write_text
 from solver.attitude import dcm_from_euler
 from solver.rig import builtin_rigs
 from solver.solution import Solution
@@ -69,3 +71,50 @@ def test_a_place_that_cannot_be_written_is_known_before_the_work(tmp_path: Path)
         check_writable(tmp_path / "new" / "out.csv")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
     check_writable(tmp_path / "out.csv")
+
+
+def test_what_is_no_plain_file_is_refused_and_stays(tmp_path: Path) -> None:
+    pipe, loop, dash = tmp_path / "pipe", tmp_path / "loop", Path("-")
+    os.mkfifo(pipe)
+    loop.symlink_to(loop)
+    (tmp_path / "link").symlink_to(pipe)
+    for path, told in (
+        (pipe, "plain file"),
+        (tmp_path / "link", "plain file"),
+        (loop, "link"),
+        (dash, "standard output"),
+    ):
+        with pytest.raises(FileError, match=told):
+            check_writable(path)
+        with pytest.raises(FileError, match=told):
+            write_text(path, "new")
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link", "loop", "pipe"]
+
+
+def test_a_link_stays_and_what_it_leads_to_is_written(tmp_path: Path) -> None:
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    (folder / "old.csv").write_text("old")
+    for name in ("old.csv", "new.csv"):
+        link = tmp_path / name
+        link.symlink_to(folder / name)
+        check_writable(link)
+        write_text(link, "text")
+        assert link.is_symlink()
+        assert (folder / name).read_text() == "text"
+    assert sorted(path.name for path in folder.iterdir()) == ["new.csv", "old.csv"]
+
+
+def test_outputs_are_apart_from_inputs_and_from_each_other(tmp_path: Path) -> None:
+    flight, link, new = tmp_path / "f.csv", tmp_path / "link.csv", tmp_path / "new.csv"
+    flight.write_text("flight")
+    link.symlink_to(flight)
+    (tmp_path / "dangling.csv").symlink_to(new)
+    check_apart({"--out": new, "--report": None, "--plot": tmp_path / "p.html"}, {"IN": flight})
+    for out in (flight, link, tmp_path / "." / "f.csv"):
+        with pytest.raises(FileError, match="another file for --out, this one is IN"):
+            check_apart({"--out": out}, {"IN": flight})
+    for report in (new, tmp_path / "dangling.csv"):
+        with pytest.raises(FileError, match="another file for --report, this one is --out"):
+            check_apart({"--out": new, "--report": report}, {"IN": flight})

@@ -70,19 +70,39 @@ def test_a_plan_is_made_with_leads_and_report(stores: Stores) -> None:
 
 
 def test_a_flight_that_is_no_flight_fails_with_a_reason_and_the_next_one_goes_on(stores: Stores) -> None:
-    moment = stores.add_plan(stores.add_flight("time_s,yaw_deg,pitch_deg,roll_deg\n0,1,2,3\n"))
+    endless = stores.add_plan(stores.add_flight("time_s,yaw_deg,pitch_deg,roll_deg\n0,1,2,3\n1e9,2,3,4\n"))
     good = stores.add_plan(stores.add_flight(SLOW))
 
     async def work(queue: PlanQueue) -> None:
-        queue.submit(moment)
+        queue.submit(endless)
         queue.submit(good)
-        assert await ended(stores, moment) == "failed"
+        assert await ended(stores, endless) == "failed"
         assert await ended(stores, good) == "done"
 
     run(stores, work)
-    error = stores.plans.get(moment).error
+    error = stores.plans.get(endless).error
     assert error is not None
-    assert "two samples" in error["message"]
+    assert "duration_s" in error["message"]
+
+
+@pytest.mark.parametrize("method", ["exact", "plan", "preview"])
+@pytest.mark.parametrize("rows", ["0,10,20,30\n", "0,10,20,30\n0.001,10,20,30\n"])
+def test_a_flight_of_a_moment_is_planned_as_a_stand(stores: Stores, method: str, rows: str) -> None:
+    plan = stores.add_plan(stores.add_flight("time_s,yaw_deg,pitch_deg,roll_deg\n" + rows), method)
+
+    async def work(queue: PlanQueue) -> None:
+        queue.submit(plan)
+        assert await ended(stores, plan) == "done"
+
+    run(stores, work)
+    result = stores.plans.get(plan).result
+    assert result is not None
+    assert result["refusal"] is None
+    assert "held" in result["resampling"]
+    folder = read_plan(stores.plans.folder(plan))
+    assert result["samples"] == 2 + folder.info.lead_in_samples + folder.info.lead_out_samples
+    np.testing.assert_allclose(folder.angles, np.tile(folder.angles[0], (len(folder.angles), 1)), atol=1e-3)
+    assert np.nanmax(np.rad2deg(folder.error)) < 1e-11
 
 
 def test_cancel_works_at_any_moment_and_leaves_nothing(stores: Stores) -> None:

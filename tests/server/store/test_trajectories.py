@@ -1,5 +1,6 @@
 """Stored flights: one address a flight, whole or not at all."""
 
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,8 @@ import pytest
 
 from server.store.errors import InUseError, NotFoundError
 from server.store.trajectories import TrajectoryStore
+from server.store.trajectory import Convention
+from server.store.trajectory_file import read_trajectory
 from tests.server.store.stores import Stores
 
 FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 100},{k / 10},{k / 20},0\n" for k in range(101))
@@ -49,3 +52,37 @@ def test_what_a_crash_left_is_cleared_at_the_next_start(stores: Stores, tmp_path
     (left / "time.npy").write_bytes(b"half")
     TrajectoryStore(stores.database, tmp_path / "trajectories")
     assert not left.exists()
+
+
+def test_one_flight_added_by_many_at_once_is_new_once(stores: Stores) -> None:
+    for turn in range(5):
+        text = FLIGHT.replace(",0\n", f",{turn}\n")
+        together = threading.Barrier(6)
+        news: list[bool] = []
+
+        def add(number: int, text: str = text, together: threading.Barrier = together, news: list[bool] = news) -> None:
+            path = stores.folder / f"upload-{number}"
+            path.write_text(text, encoding="utf-8")
+            flight = read_trajectory(path, Convention.NUE)
+            together.wait()
+            news.append(stores.trajectories.add(flight, "flight", path, "0" * 64, "csv")[1])
+
+        threads = [threading.Thread(target=add, args=(number,)) for number in range(6)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert sorted(news) == [False] * 5 + [True]
+    names = sorted(path.name for path in (stores.folder / "trajectories").iterdir())
+    assert names == sorted(row.sha256 for row in stores.trajectories.all())
+
+
+def test_a_folder_without_its_row_is_what_a_crash_left_and_is_replaced(stores: Stores) -> None:
+    sha256 = stores.add_flight(FLIGHT)
+    stores.trajectories.remove(sha256)
+    left = stores.folder / "trajectories" / sha256
+    left.mkdir()
+    (left / "time.npy").write_bytes(b"half")
+    assert stores.add_flight(FLIGHT) == sha256
+    assert stores.trajectories.arrays(sha256)[0].size == 101
+    assert (left / "source.csv").read_text() == FLIGHT

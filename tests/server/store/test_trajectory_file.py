@@ -1,6 +1,7 @@
 """Every way in which a flight's file can be wrong has one message that says where; good files give the attitude."""
 
 import json
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from server.store.errors import FileError
-from server.store.trajectory import Convention, Trajectory
+from server.store.trajectory import Convention, Trajectory, euler_deg
 from server.store.trajectory_file import read_trajectory
 from solver.attitude import dcm_from_quaternion
 
@@ -213,3 +214,60 @@ def test_arrays_are_read_only(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="read-only"):
         flight.q[0, 0] = 2.0
     assert json.dumps([c.message for c in flight.warnings]) == "[]"
+
+
+def test_lines_that_end_in_cr_alone_are_said_to(tmp_path: Path) -> None:
+    for text in (HEADER + "0,1,2,3\n1,1,2,3\n", "# a comment\n" + HEADER + "0,1,2,3\n"):
+        error = refused(tmp_path, text.replace("\n", "\r"))
+        assert "CR alone" in str(error)
+        assert error.line == 1
+
+
+def test_cells_too_long_to_be_any(tmp_path: Path) -> None:
+    long = "1" * 140_000
+    assert refused(tmp_path, HEADER.strip() + f",{long}\n0,1,2,3,4\n").line == 1
+    assert refused(tmp_path, HEADER + f"0,1,2,3\n1,1,2,{long}x\n").line == 3
+    note = "time_s,yaw_deg,pitch_deg,roll_deg,note\n"
+    assert refused(tmp_path, note + f"0,1,2,3,{long}\n0,1,2,3,4\n").line == 2
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "line", "value", "told"),
+    [
+        ("0", "1e-300", 3, "1e-300", "at least"),
+        ("-1e308", "1.5e308", 2, "-1e+308", "between"),
+        ("0.1", "0.05", 3, "0.05", "after 0.1,"),
+    ],
+)
+def test_times_beyond_reason_and_the_digits_of_the_file(
+    tmp_path: Path, first: str, second: str, line: int, value: str, told: str
+) -> None:
+    error = refused(tmp_path, HEADER + f"{first},1,2,3\n{second},1,2,3\n")
+    assert (error.line, error.column, error.value) == (line, "time_s", value)
+    assert told in error.expected
+
+
+def test_parquet_with_whole_numbers_that_no_double_has(tmp_path: Path) -> None:
+    path = tmp_path / "flight.parquet"
+    columns = {"time_s": [0, 10**18 + 1], "yaw_deg": [0, 2**53 + 1], "pitch_deg": [0, 0], "roll_deg": [0, 0]}
+    pq.write_table(pa.table(columns), path)
+    error = refused(tmp_path, path.read_bytes())
+    assert "row 2, column time_s: 1e+18" in str(error)
+    pq.write_table(pa.table(columns | {"time_s": [0, 1]}), path)
+    assert read_trajectory(path, Convention.NUE).time.size == 2
+
+
+def test_a_broken_parquet_file_is_one_clear_error_wherever_it_is_broken(tmp_path: Path) -> None:
+    path = tmp_path / "flight.parquet"
+    pq.write_table(pa.table({name: np.arange(5.0) for name in HEADER.strip().split(",")}), path)
+    whole, random = path.read_bytes(), np.random.default_rng(1)
+    for place in range(4, len(whole)):
+        path.write_bytes(whole[:place] + bytes([int(random.integers(256)) | 0x80]) + whole[place + 1 :])
+        with suppress(FileError):  # and no other
+            read_trajectory(path, Convention.NUE, "flight.csv")
+
+
+def test_turns_are_counted_through_every_sample() -> None:
+    roll = np.linspace(0.0, 7200.0, 100_001)
+    q = Rotation.from_euler("YZX", np.column_stack([0 * roll, 0 * roll, roll]), degrees=True).as_quat(scalar_first=True)
+    np.testing.assert_allclose(euler_deg(q), np.column_stack([0 * roll, 0 * roll, roll]), atol=1e-9)
