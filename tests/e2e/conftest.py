@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[2]
 FLIGHTS = ROOT / "examples" / "flights"
 FLIGHT = FLIGHTS / "loop.csv"
 DESK: ViewportSize = {"width": 1440, "height": 900}
+TABLET: ViewportSize = {"width": 1024, "height": 768}
 # Software rendering for WebGL; 2D canvases without it, where it is many times slower than the processor itself.
 CHROMIUM_ARGS = [
     "--no-sandbox",
@@ -149,7 +150,7 @@ def stocked(server: Server) -> Stock:
             flight = client.post("/trajectories", data=form, files={"file": file}).raise_for_status().json()["sha256"]
         wanted = {"trajectory": flight, "rig": "vertical-limited"}
         plan = client.post("/plans", json={**wanted, "method": "exact"}).raise_for_status().json()
-        methods = ["exact", "plan", "three_axis"]
+        methods = ["exact", "plan", "preview", "gradient_projection", "three_axis"]
         comparison = client.post("/compare", json={**wanted, "methods": methods}).raise_for_status().json()
         return Stock(flight, _done(client, f"/plans/{plan['id']}"), _done(client, f"/compare/{comparison['id']}"))
 

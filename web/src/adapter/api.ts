@@ -62,19 +62,40 @@ function failure(status: number, body: string): ApiError {
   return new ApiError(status, status === 0 ? "The server does not answer" : `The server answered ${status}`);
 }
 
-async function request<T>(method: string, path: string, body?: unknown, keepalive = false): Promise<T> {
-  const init: RequestInit = { method, keepalive, headers: { "x-fullpose-client": me() } };
+/** How long an answer may take [ms]: to a Stop, to a command or the lease, and to what is read or begun. */
+const STOP_MS = 2000;
+const COMMAND_MS = 10_000;
+const READ_MS = 60_000;
+
+interface Sending {
+  body?: unknown;
+  withinMs?: number;
+  /** Sent also from a page that is being left. */
+  keepalive?: boolean;
+}
+
+async function request<T>(method: string, path: string, { body, withinMs = READ_MS, keepalive = false }: Sending = {}): Promise<T> {
+  const init: RequestInit = {
+    method,
+    keepalive,
+    headers: { "x-fullpose-client": me() },
+    signal: AbortSignal.timeout(withinMs),
+  };
   if (body !== undefined) {
     init.body = JSON.stringify(body);
     init.headers = { ...init.headers, "content-type": "application/json" };
   }
   let response: Response;
+  let text: string;
   try {
     response = await fetch(BASE + path, init);
-  } catch {
+    text = await response.text();
+  } catch (error) {
+    if (error instanceof DOMException && error.name === "TimeoutError") {
+      throw new ApiError(0, `The server did not answer within ${withinMs / 1000} s`);
+    }
     throw failure(0, "");
   }
-  const text = await response.text();
   if (!response.ok) throw failure(response.status, text);
   return (text === "" ? undefined : JSON.parse(text)) as T;
 }
@@ -100,24 +121,26 @@ export const api = {
   plan: (id: string) => request<Plan>("GET", `/plans/${at(id)}`),
   planSamples: (id: string, points = 1200) => request<PlanSamples>("GET", `/plans/${at(id)}/samples?points=${points}`),
   createPlan: (trajectory: string, rig: string, method: string) =>
-    request<Plan>("POST", "/plans", { trajectory, rig, method } satisfies Pick<PlanIn, "trajectory" | "rig" | "method">),
-  createRemedy: (plan: string, kind: RemedyKind) => request<Plan>("POST", `/plans/${at(plan)}/remedies`, { kind }),
+    request<Plan>("POST", "/plans", {
+      body: { trajectory, rig, method } satisfies Pick<PlanIn, "trajectory" | "rig" | "method">,
+    }),
+  createRemedy: (plan: string, kind: RemedyKind) => request<Plan>("POST", `/plans/${at(plan)}/remedies`, { body: { kind } }),
   cancelPlan: (id: string) => request<void>("DELETE", `/plans/${at(id)}`),
 
   comparisons: () => request<Comparison[]>("GET", "/compare"),
   comparison: (id: string) => request<Comparison>("GET", `/compare/${at(id)}`),
   createComparison: (trajectory: string, rig: string, methods: string[]) =>
-    request<Comparison>("POST", "/compare", { trajectory, rig, methods }),
+    request<Comparison>("POST", "/compare", { body: { trajectory, rig, methods } }),
   /** Cancels one that is under way, removes one that is not. */
   removeComparison: (id: string) => request<void>("DELETE", `/compare/${at(id)}`),
 
   command: (rig: string, command: string, args: object, lease: LeaseToken | null) =>
-    request<CommandOut>("POST", `/rigs/${at(rig)}/commands`, { command, args, lease }),
+    request<CommandOut>("POST", `/rigs/${at(rig)}/commands`, { body: { command, args, lease }, withinMs: COMMAND_MS }),
   lease: (rig: string, action: LeaseAction) =>
-    request<Lease>("POST", `/rigs/${at(rig)}/lease`, { action }),
-  releaseLease: (rig: string) => request<Lease>("DELETE", `/rigs/${at(rig)}/lease`),
-  stop: (rig: string) => request<CommandOut>("POST", `/rigs/${at(rig)}/stop`),
-  estop: (rig: string) => request<CommandOut>("POST", `/rigs/${at(rig)}/estop`),
+    request<Lease>("POST", `/rigs/${at(rig)}/lease`, { body: { action }, withinMs: COMMAND_MS }),
+  releaseLease: (rig: string) => request<Lease>("DELETE", `/rigs/${at(rig)}/lease`, { withinMs: COMMAND_MS }),
+  stop: (rig: string) => request<CommandOut>("POST", `/rigs/${at(rig)}/stop`, { withinMs: STOP_MS }),
+  estop: (rig: string) => request<CommandOut>("POST", `/rigs/${at(rig)}/estop`, { withinMs: STOP_MS }),
 
   runs: () => request<Run[]>("GET", "/runs"),
   run: (id: string) => request<Run>("GET", `/runs/${at(id)}`),
@@ -125,7 +148,7 @@ export const api = {
 
   /** Shows a plan's pose as a ghost beside the rig; null takes it away. */
   scenePose: (rig: string, pose: { plan_id: string; time_s: number } | null) =>
-    request<ScenePose | null>("POST", `/rigs/${at(rig)}/scene/pose`, pose, pose === null), // also from a page that is being left
+    request<ScenePose | null>("POST", `/rigs/${at(rig)}/scene/pose`, { body: pose, keepalive: pose === null }),
 
   streamUrl: (rig: string) => webSocket(`/rigs/${at(rig)}/stream`),
   replayUrl: (run: string) => webSocket(`/runs/${at(run)}/stream`),

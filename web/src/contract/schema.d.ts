@@ -433,7 +433,7 @@ export interface paths {
         };
         /**
          * List Runs
-         * @description All runs, newest first.
+         * @description All runs and incidents, newest first; a record that cannot be read is listed with its error.
          */
         get: operations["list_runs_api_v1_runs_get"];
         put?: never;
@@ -473,7 +473,7 @@ export interface paths {
         };
         /**
          * Export Run
-         * @description The whole run as a file: every sample of the record.
+         * @description The whole run as a file: every sample of the record; as MCAP always with an index, repaired where need be.
          */
         get: operations["export_run_api_v1_runs__run__export_get"];
         put?: never;
@@ -616,6 +616,11 @@ export interface components {
             first: boolean;
             /** Frame */
             frame?: ("base" | "outer" | "middle" | "inner") | null;
+            /**
+             * Last Time S
+             * @description Of the newest occurrence, where there was more than one
+             */
+            last_time_s?: number | null;
             /** Limit */
             limit?: number | null;
             /** Message */
@@ -736,11 +741,13 @@ export interface components {
         };
         /**
          * CompareIn
-         * @description What to compare. Without `start_deg` every method starts at its own choice of pose.
+         * @description What to compare; in a text, options come after colons: alm:mode=open_loop.
+         *
+         *     Without `start_deg` every method starts at its own choice of pose.
          */
         CompareIn: {
             /** Methods */
-            methods: string[];
+            methods: (string | components["schemas"]["MethodIn"])[];
             /** Rig */
             rig: string;
             /** Start Deg */
@@ -766,7 +773,10 @@ export interface components {
             error: components["schemas"]["JobErrorOut"] | null;
             /** Id */
             id: string;
-            /** Methods */
+            /**
+             * Methods
+             * @description Their labels
+             */
             methods: string[];
             /**
              * Page
@@ -932,7 +942,7 @@ export interface components {
         };
         /**
          * HealthOut
-         * @description `status` is degraded where a rig process, a recorder or the planner does not answer.
+         * @description `status` is degraded where a rig process, a recorder or the planner does not answer, or a rig file is none.
          */
         HealthOut: {
             /**
@@ -1058,6 +1068,21 @@ export interface components {
             frame: "base" | "outer" | "middle" | "inner";
             /** Step Deg */
             step_deg: number;
+        };
+        /**
+         * LeadsOut
+         * @description The ways from rest to the first sample and from the last one to rest.
+         */
+        LeadsOut: {
+            /** Lead In S */
+            lead_in_s: number;
+            /** Lead Out S */
+            lead_out_s: number;
+            /**
+             * Refusal
+             * @description Why there is none
+             */
+            refusal: string | null;
         };
         /**
          * LeaseIn
@@ -1359,6 +1384,13 @@ export interface components {
             /** Claims Limits */
             claims_limits: boolean;
             /**
+             * Exact Percent
+             * @description The share as tables show it: in hundredths, rounded down
+             */
+            exact_percent?: number | null;
+            /** Exact Samples */
+            exact_samples?: number | null;
+            /**
              * Exact Share
              * @description 0..1, of the samples
              */
@@ -1368,6 +1400,11 @@ export interface components {
             /** Feasible */
             feasible?: boolean | null;
             iterations?: components["schemas"]["IterationsOut"] | null;
+            /**
+             * Label
+             * @description Unlike every other of the comparison
+             */
+            label: string;
             /** Limit Violation Counts */
             limit_violation_counts?: {
                 [key: string]: {
@@ -1390,6 +1427,14 @@ export interface components {
             max_matrix_error?: number | null;
             /** Method */
             method: string;
+            /**
+             * Options
+             * @description The ones that were given
+             * @default {}
+             */
+            options: {
+                [key: string]: boolean | number | string;
+            };
             peak?: components["schemas"]["PeaksOut"] | null;
             /** Refusal */
             refusal: string | null;
@@ -1408,6 +1453,26 @@ export interface components {
             total_variation_deg?: {
                 [key: string]: number;
             } | null;
+        };
+        /**
+         * MethodIn
+         * @description A method with options (GET /methods lists them), and what it is called in the table.
+         */
+        MethodIn: {
+            /**
+             * Label
+             * @description Of its own; null: the name and the options given
+             */
+            label?: string | null;
+            /** Method */
+            method: string;
+            /**
+             * Options
+             * @default {}
+             */
+            options: {
+                [key: string]: boolean | number | string;
+            };
         };
         /**
          * MethodOut
@@ -1915,7 +1980,7 @@ export interface components {
             value: number;
             /**
              * What
-             * @description time; the axis yaw, pitch or roll; or frame and limit
+             * @description time; the axis yaw, pitch or roll; frame and limit; or nothing
              */
             what: string;
         };
@@ -2009,9 +2074,24 @@ export interface components {
          */
         ReportOut: {
             blocking: components["schemas"]["BlockingOut"] | null;
-            /** Feasible */
+            /**
+             * Exact Percent
+             * @description In hundredths, rounded down
+             */
+            exact_percent?: number | null;
+            /**
+             * Exact Samples
+             * @description Within 1e-9 deg of the attitude
+             */
+            exact_samples?: number | null;
+            /**
+             * Feasible
+             * @description Inside every limit, no sample given up for one; see exact_samples
+             */
             feasible: boolean;
             iterations: components["schemas"]["IterationsOut"];
+            /** @description Of method plan */
+            leads?: components["schemas"]["LeadsOut"] | null;
             /**
              * Limit Violation Samples
              * @description All of them; the list is cut at a thousand runs
@@ -2042,6 +2122,8 @@ export interface components {
             /** Solve S */
             solve_s: number | null;
             step_us: components["schemas"]["StepTimeOut"] | null;
+            /** @description Of method plan */
+            verdict?: components["schemas"]["VerdictOut"] | null;
             /**
              * Warnings
              * @default []
@@ -2136,18 +2218,28 @@ export interface components {
             bytes: number;
             /**
              * Complete
-             * @description False while it is being written, or where the recorder was cut off
+             * @description False while it is being written, or where it was cut off or is damaged
              */
             complete: boolean;
             /** Duration S */
             duration_s: number | null;
             /** Ended At */
             ended_at: string | null;
+            /**
+             * Error
+             * @description Why the record cannot be read: then nothing but its name is known
+             */
+            error: string | null;
             /** Id */
             id: string;
             /**
+             * Incident
+             * @description Null: a run. Else no flight: what was kept around a fault while no run was recorded, and the code of its alarm
+             */
+            incident: string | null;
+            /**
              * Lost Samples
-             * @description Sequence numbers that are missing
+             * @description Sequence numbers that are missing, from its beginning to its end
              */
             lost_samples: number | null;
             /** Max Lateness Us */
@@ -2755,6 +2847,26 @@ export interface components {
              */
             command: "unload";
             lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * VerdictOut
+         * @description What the verdict of method plan rests on.
+         */
+        VerdictOut: {
+            /**
+             * Decided By
+             * @description checked; or the limit that closes the way, start_rate, or three-axis
+             */
+            decided_by: string;
+            /**
+             * Grid Deg
+             * @description Of the search; null where there was none
+             */
+            grid_deg: number | null;
+            /** Max Matrix Error Between Samples */
+            max_matrix_error_between_samples: number | null;
+            /** Statement */
+            statement: string;
         };
         /**
          * ViolationOut

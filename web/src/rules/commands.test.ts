@@ -43,6 +43,14 @@ describe("a command", () => {
     expect(enabled("start", { busy: true })).toBe(false);
   });
 
+  it("that holds waits for none", () => {
+    expect(enabled("hold", { busy: true })).toBe(true);
+  });
+
+  it("that sets the rig in motion has no key", () => {
+    expect(COMMANDS.filter(({ motion, key }) => motion && key)).toEqual([]);
+  });
+
   it.each(["arm", "start", "resume", "move", "home"])("that moves the rig is refused on stale data: %s", (command) => {
     const now = { allowed: [command] };
     expect(enabled(command, now)).toBe(true);

@@ -9,8 +9,7 @@ export interface CommandLook {
   key?: string;
 }
 
-const motion = (name: string, label: string, key?: string): CommandLook =>
-  key ? { name, label, motion: true, key } : { name, label, motion: true };
+const motion = (name: string, label: string): CommandLook => ({ name, label, motion: true });
 const still = (name: string, label: string, key?: string): CommandLook =>
   key ? { name, label, motion: false, key } : { name, label, motion: false };
 
@@ -22,7 +21,7 @@ export const COMMANDS: readonly CommandLook[] = [
   motion("start", "Start"),
   motion("go_live", "Go live"),
   still("hold", "Hold", "Space"),
-  motion("resume", "Resume", "Space"),
+  motion("resume", "Resume"),
   motion("move", "Move, jog…"),
   motion("home", "Home"),
   still("disarm", "Disarm"),
@@ -60,7 +59,8 @@ export function verdict(command: string, now: Circumstances): Verdict {
   if (command === "load" && !now.plan) return no("Choose a plan first");
   if (command === "acknowledge" && now.unacknowledged === 0) return no("No alarm waits");
   if (command === "reset" && now.unacknowledged > 0) return no("Acknowledge the alarms first");
-  if (now.busy) return no("A command is under way");
+  // A hold waits for nothing of ours.
+  if (now.busy && command !== "hold") return no("A command is under way");
   return { enabled: true };
 }
 

@@ -1,12 +1,12 @@
 import { describe, expect, it } from "vitest";
 import type { MethodFigures } from "../contract/types";
-import { best, COLUMNS, fit, ranked, share, standingOf, summaryOf, type Column } from "./compare";
+import { best, COLUMNS, exactText, fit, ranked, standingOf, summaryOf, type Column } from "./compare";
 
 const peaks = (rate: number): object => ({ base: null, outer: { position_deg: 1, rate_deg_s: rate, acceleration_deg_s2: 9 } });
 
 function method(name: string, fields: object = {}): MethodFigures {
   const figures = { refusal: null, feasible: true, exact_share: 1, max_error_deg: 1e-13, limit_violation_samples: 0, peak: peaks(10) };
-  return { method: name, source: "", claims_limits: true, ...figures, ...fields } as unknown as MethodFigures;
+  return { label: name, method: name, source: "", claims_limits: true, ...figures, ...fields } as unknown as MethodFigures;
 }
 
 function column(key: string): Column {
@@ -31,10 +31,29 @@ describe("what a method comes to", () => {
     expect(standingOf(method("x", { refusal: "needs four axes", feasible: null }))).toMatchObject({ tone: "", detail: "needs four axes" });
   });
 
-  it("never rounds up to all of it", () => {
-    expect(share(0.999999)).toBe("99.99 %");
-    expect(share(1)).toBe("100 %");
-    expect(share(null)).toBe("–");
+  it("never rounds up to all of it, nor down to none", () => {
+    const text = (exact_percent: number | null, exact_samples: number | null): string => exactText(method("a", { exact_percent, exact_samples }));
+    expect([text(100, 9), text(99.99, 8), text(0.3, 2), text(0, 1), text(0, 0), text(null, null)]).toEqual([
+      "100 %",
+      "99.99 %",
+      "0.30 %",
+      "< 0.01 %",
+      "0 %",
+      "–",
+    ]);
+  });
+
+  it("counts no iterations of a method that stopped before its first sample", () => {
+    const { text, more, value } = column("iterations");
+    const at = (median: number, max: number): unknown[] => [value, text, more!].map((of) => of(method("a", { iterations: { median, max } })));
+    expect(at(0, 0)).toEqual([null, "–", null]);
+    expect(at(2, 30)).toEqual([2, "2", "most 30"]);
+  });
+
+  it("adds up the way of all frames", () => {
+    const { value } = column("way");
+    expect(value(method("a", { total_variation_deg: { base: 1.5, outer: 2 } }))).toBe(3.5);
+    expect(value(method("a", { total_variation_deg: null }))).toBeNull();
   });
 });
 
@@ -47,6 +66,8 @@ describe("the best value", () => {
   it("does not tell errors of rounding apart", () => {
     const three = [method("a", { max_error_deg: 3e-14 }), method("b", { max_error_deg: 8e-13 }), method("c", { max_error_deg: 0.02 })];
     expect(bestOf("largest", three)).toEqual(["a", "b"]);
+    const matrices = [1e-16, 4e-15, 0.1].map((max_matrix_error, i) => method(`m${i}`, { max_matrix_error }));
+    expect(bestOf("matrix", matrices)).toEqual(["m0", "m1"]);
   });
 
   it("is not marked where most share it", () => {
@@ -66,6 +87,11 @@ describe("the best value", () => {
     const none = method("none", { refusal: "no", max_error_deg: null, limit_violation_samples: null });
     expect(bestOf("violations", [none, method("a"), method("b", { limit_violation_samples: 4 })])).toEqual(["a"]);
   });
+});
+
+it("tells one method's options apart by their labels", () => {
+  const closed = method("alm", { label: "alm:mode=closed_loop", peak: peaks(5) });
+  expect(bestOf("rate", [method("alm"), closed])).toEqual(["alm:mode=closed_loop"]);
 });
 
 it("puts what can be flown first and keeps the order within", () => {

@@ -16,11 +16,15 @@ export interface Column {
   tip: string;
   value: (method: MethodFigures) => number | null;
   text: (method: MethodFigures) => string;
+  /** A second figure, under the first. */
+  more?: (method: MethodFigures) => string | null;
   better: "low" | "high";
   /** Whether a value is a failing of its own, however the others do. */
   bad: (method: MethodFigures) => "danger" | "caution" | "";
   /** Whether only methods that could be flown compete: low effort is no merit of a method that misses the flight. */
   fitOnly: boolean;
+  /** Values below this are rounding, hence equal; of the bound of exactness [deg]. */
+  floor?: (exactWithinDeg: number) => number;
 }
 
 /** Exact at every sample and inside every limit. */
@@ -56,11 +60,21 @@ function largest(method: MethodFigures, key: keyof Peak): number | null {
   return peaks.length > 0 ? Math.max(...peaks) : null;
 }
 
-/** 100 % only of all samples; what is a little less never rounds up to it. */
-export function share(value: number | null | undefined): string {
-  if (value === null || value === undefined) return fixed(null, 0);
-  if (value === 1) return "100 %";
-  return `${fixed(Math.floor(value * 1e4) / 100, 2)} %`;
+/** Share of exact samples; all and none only of all and none. The server rounds it, the same for every table. */
+export function exactText({ exact_percent: percent, exact_samples: samples }: MethodFigures): string {
+  if (percent === null || percent === undefined) return fixed(null, 0);
+  if (percent === 0 && samples) return "< 0.01 %";
+  return `${fixed(percent, percent === 0 || percent === 100 ? 0 : 2)} %`;
+}
+
+/** A method that stops before its first sample has counted none. */
+function counted({ iterations }: MethodFigures): { median: number; max: number } | null {
+  return iterations && iterations.max > 0 ? iterations : null;
+}
+
+/** Way of all frames together [deg]. */
+function way({ total_variation_deg: ways }: MethodFigures): number | null {
+  return ways ? Object.values(ways).reduce((sum, each) => sum + each, 0) : null;
 }
 
 const fine = (): "" => "";
@@ -72,7 +86,7 @@ export const COLUMNS: readonly Column[] = [
     unit: "",
     tip: "Share of the samples that reproduce the attitude",
     value: ({ exact_share }) => exact_share ?? null,
-    text: ({ exact_share }) => share(exact_share),
+    text: exactText,
     better: "high",
     bad: ({ exact_share }) => (exact_share === 1 ? "" : "caution"),
     fitOnly: false,
@@ -87,6 +101,7 @@ export const COLUMNS: readonly Column[] = [
     better: "low",
     bad: fine,
     fitOnly: false,
+    floor: (exactWithinDeg) => exactWithinDeg,
   },
   {
     key: "rms",
@@ -98,6 +113,19 @@ export const COLUMNS: readonly Column[] = [
     better: "low",
     bad: fine,
     fitOnly: false,
+    floor: (exactWithinDeg) => exactWithinDeg,
+  },
+  {
+    key: "matrix",
+    heading: "Matrix error",
+    unit: "1",
+    tip: "Largest entry of the difference of the attitude matrices",
+    value: ({ max_matrix_error }) => max_matrix_error ?? null,
+    text: ({ max_matrix_error }) => scientific(max_matrix_error),
+    better: "low",
+    bad: fine,
+    fitOnly: false,
+    floor: (exactWithinDeg) => (exactWithinDeg * Math.PI) / 180,
   },
   {
     key: "violations",
@@ -108,6 +136,17 @@ export const COLUMNS: readonly Column[] = [
     text: ({ limit_violation_samples }) => integer(limit_violation_samples),
     better: "low",
     bad: ({ limit_violation_samples }) => ((limit_violation_samples ?? 0) > 0 ? "danger" : ""),
+    fitOnly: false,
+  },
+  {
+    key: "limited",
+    heading: "Limited",
+    unit: "samples",
+    tip: "Samples that the method itself marked as kept from the attitude by a limit",
+    value: ({ limited_samples }) => limited_samples ?? null,
+    text: ({ limited_samples }) => integer(limited_samples),
+    better: "low",
+    bad: ({ limited_samples }) => ((limited_samples ?? 0) > 0 ? "caution" : ""),
     fitOnly: false,
   },
   {
@@ -133,12 +172,24 @@ export const COLUMNS: readonly Column[] = [
     fitOnly: true,
   },
   {
+    key: "way",
+    heading: "Total way",
+    unit: "deg",
+    tip: "Total variation of all frames",
+    value: way,
+    text: (method) => big(way(method), 0),
+    better: "low",
+    bad: fine,
+    fitOnly: true,
+  },
+  {
     key: "iterations",
     heading: "Iterations",
     unit: "median",
-    tip: "A step, median; the most is behind it",
-    value: ({ iterations }) => iterations?.median ?? null,
-    text: ({ iterations }) => (iterations ? `${fixed(iterations.median, 0)} / ${iterations.max}` : fixed(null, 0)),
+    tip: "A step, median; the most is under it",
+    value: (method) => counted(method)?.median ?? null,
+    text: (method) => fixed(counted(method)?.median, 0),
+    more: (method) => (counted(method) ? `most ${counted(method)?.max}` : null),
     better: "low",
     bad: fine,
     fitOnly: true,
@@ -147,16 +198,17 @@ export const COLUMNS: readonly Column[] = [
     key: "step",
     heading: "Step",
     unit: "µs",
-    tip: "Median of a step on the server's machine; the 99th percentile is behind it",
+    tip: "Median of a step on the server's machine; the 99th percentile is under it",
     value: ({ step_us }) => step_us?.median ?? null,
-    text: ({ step_us }) => (step_us ? `${microseconds(step_us.median)} / ${microseconds(step_us.p99)}` : fixed(null, 0)),
+    text: ({ step_us }) => (step_us ? microseconds(step_us.median) : fixed(null, 0)),
+    more: ({ step_us }) => (step_us ? `p99 ${microseconds(step_us.p99)}` : null),
     better: "low",
     bad: fine,
     fitOnly: true,
   },
 ];
 
-const microseconds = (value: number): string => fixed(value, value < 10 ? 2 : 1);
+const microseconds = (value: number): string => fixed(value, value < 10 ? 2 : value < 1000 ? 1 : 0);
 
 /** A peak in plain digits up to five of them: an impossible one is a power of ten. */
 function big(value: number | null, digits: number): string {
@@ -170,13 +222,13 @@ const MOST = 2 / 3;
 
 /**
  * The methods whose value in a column is the best; none where most of them share it.
- * Errors below `exactWithinDeg` are rounding, hence equal.
+ * Errors below the bound `exactWithinDeg` are rounding, hence equal.
  */
 export function best(column: Column, methods: readonly MethodFigures[], exactWithinDeg: number): ReadonlySet<string> {
-  const floor = column.unit === "deg" ? exactWithinDeg : 0;
+  const floor = column.floor?.(exactWithinDeg) ?? 0;
   const rivals = methods.flatMap((method) => {
     const value = method.refusal !== null || (column.fitOnly && !fit(method)) ? null : column.value(method);
-    return value === null ? [] : [{ name: method.method, value: Math.max(value, floor) }];
+    return value === null ? [] : [{ name: method.label, value: Math.max(value, floor) }];
   });
   const values = rivals.map(({ value }) => value);
   const top = column.better === "low" ? Math.min(...values) : Math.max(...values);
@@ -195,7 +247,7 @@ export function summaryOf({ report }: Pick<Comparison, "report">): string {
   if (!report) return "";
   const able = report.methods.filter(fit);
   if (able.length === 0) return "No method flies this exactly within the limits of the rig.";
-  const names = able.map(({ method }) => method);
+  const names = able.map(({ label }) => label);
   if (able.length === report.methods.length) return "All methods fly it exactly within the limits.";
   const list = names.length === 1 ? names[0] : `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
   return `${list} ${names.length === 1 ? "flies" : "fly"} it exactly within the limits.`;

@@ -50,3 +50,8 @@ export function bytes(count: number | null | undefined): string {
 export function integer(value: number | null | undefined): string {
   return value === null || value === undefined || !Number.isFinite(value) ? MISSING : value.toLocaleString("en-US");
 }
+
+/** The time of day here, of seconds since 1970. */
+export function clockTime(seconds: number): string {
+  return new Date(seconds * 1000).toLocaleTimeString([], { hour12: false });
+}

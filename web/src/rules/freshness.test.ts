@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { NO_LINK, type Link } from "../adapter/link";
-import { dataAgeMs, freshness, LATE_MS, STALE_MS } from "./freshness";
+import { dataAgeMs, freshness, LATE_MS, looksStale, STALE_MS } from "./freshness";
 
 const OPEN: Link = { ...NO_LINK, phase: "open", ageAtSendMs: 3, receivedAtMs: 1000, roundTripMs: 8 };
 
@@ -39,5 +39,20 @@ describe("freshness", () => {
 
   it("is stale where the age is not a number", () => {
     expect(freshness({ ...OPEN, ageAtSendMs: NaN }, 1000)).toBe("stale");
+  });
+});
+
+describe("what is on the screen", () => {
+  const session = (state: string): Pick<Link, "session"> => ({ session: { state } as Link["session"] });
+
+  it("looks old on old data and on a lost link, once there is something to look old", () => {
+    expect(looksStale({ ...OPEN, ...session("running") }, "late")).toBe(false);
+    expect(looksStale({ ...OPEN, ...session("running") }, "stale")).toBe(true);
+    expect(looksStale({ ...OPEN, ...session("disconnected"), phase: "closed" }, "stale")).toBe(true);
+    expect(looksStale(NO_LINK, "stale")).toBe(false);
+  });
+
+  it("does not for a rig without a drive, which has no data", () => {
+    expect(looksStale({ ...OPEN, ...session("disconnected") }, "stale")).toBe(false);
   });
 });

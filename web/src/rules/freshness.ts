@@ -20,3 +20,9 @@ export function freshness(link: Link, nowMs: number): Freshness {
   if (link.phase !== "open" || age === null || !(age <= STALE_MS)) return "stale";
   return age > LATE_MS ? "late" : "fresh";
 }
+
+/** Whether what is on the screen is to look old. A rig without a drive, on an open link, has no data to be old. */
+export function looksStale(link: Link, fresh: Freshness): boolean {
+  if (link.session === null) return false;
+  return link.phase !== "open" || (fresh === "stale" && link.session.state !== "disconnected");
+}

@@ -35,10 +35,3 @@ const LOOKS = new Map([...PATH, ...ASIDE].map((state) => [state.name, state]));
 export function lookOf(state: string): StateLook {
   return LOOKS.get(state) ?? look(state, state, "quiet", "");
 }
-
-const MOVING = new Set(["positioning", "running", "held", "stopping", "live"]);
-
-/** Whether the rig moves or may move by itself from one moment to the next. */
-export function moving(state: string): boolean {
-  return MOVING.has(state);
-}

@@ -1,5 +1,6 @@
 /** Jobs of the server: their list, read again while any of them is under way. */
-import { messageOf } from "../adapter/api";
+import { ApiError, messageOf } from "../adapter/api";
+import { backoffMs } from "../adapter/stream";
 
 export interface Job {
   id: string;
@@ -11,51 +12,79 @@ const UNFINISHED = new Set(["queued", "running"]);
 
 export const unfinished = (job: Pick<Job, "status">): boolean => UNFINISHED.has(job.status);
 
+const passing = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
+
 export class Jobs<J extends Job> {
   all: J[] = $state.raw([]);
+  /** What kept the list or a job from being read the last time; null once it has been. */
   problem: string | null = $state(null);
 
   #polling = false;
+  #reads = 0;
+  #added = 0;
 
   constructor(
     private readonly list: () => Promise<J[]>,
     private readonly get: (id: string) => Promise<J>,
+    private readonly wait: (ms: number) => Promise<void> = passing,
   ) {}
 
   async refresh(): Promise<void> {
+    const read = ++this.#reads;
     try {
-      this.all = await this.list();
+      let added: number;
+      let all: J[];
+      do {
+        added = this.#added;
+        all = await this.list();
+      } while (added !== this.#added); // a list that was asked for before a job was made does not hold it
+      if (read !== this.#reads) return; // asked for anew meanwhile: that answer is the newer one
+      this.all = all;
       this.problem = null;
       void this.#poll();
     } catch (error) {
-      this.problem = messageOf(error);
+      if (read === this.#reads) this.problem = messageOf(error);
     }
   }
 
   /** Reads one job in full. Raises what the request raises. */
   async read(id: string): Promise<void> {
-    this.put(await this.get(id));
+    this.#replace(await this.get(id));
   }
 
   /** Takes a job in, as the newest where it is new, and follows it to its end. */
   put(job: J): void {
-    const known = this.all.some(({ id }) => id === job.id);
-    this.all = known ? this.all.map((each) => (each.id === job.id ? job : each)) : [job, ...this.all];
+    if (this.all.some(({ id }) => id === job.id)) this.#replace(job);
+    else {
+      this.#added++;
+      this.all = [job, ...this.all];
+    }
     void this.#poll();
   }
 
+  #replace(job: J): void {
+    this.all = this.all.map((each) => (each.id === job.id ? job : each));
+  }
+
+  /** Follows what is under way to its end. A read that fails is tried again, ever more slowly; a job that is gone is gone. */
   async #poll(): Promise<void> {
     if (this.#polling) return;
     this.#polling = true;
-    try {
-      while (this.all.some(unfinished)) {
-        await new Promise((resolve) => setTimeout(resolve, POLL_MS));
-        for (const { id } of this.all.filter(unfinished)) await this.read(id);
+    let misses = 0;
+    while (this.all.some(unfinished)) {
+      await this.wait(misses === 0 ? POLL_MS : backoffMs(misses, Math.random()));
+      let problem: string | null = null;
+      for (const { id } of this.all.filter(unfinished)) {
+        try {
+          await this.read(id);
+        } catch (error) {
+          if (error instanceof ApiError && error.status === 404) this.all = this.all.filter((job) => job.id !== id);
+          else problem = messageOf(error);
+        }
       }
-    } catch (error) {
-      this.problem = messageOf(error);
-    } finally {
-      this.#polling = false;
+      misses = problem === null ? 0 : misses + 1;
+      this.problem = problem;
     }
+    this.#polling = false;
   }
 }

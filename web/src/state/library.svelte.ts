@@ -1,5 +1,6 @@
 /** What the server keeps: rigs, trajectories, methods, runs, and the jobs: plans and comparisons. */
 import { api, messageOf, upload } from "../adapter/api";
+import { backoffMs } from "../adapter/stream";
 import type { Comparison, Health, Method, Plan, RemedyKind, Rig, Run, Trajectory } from "../contract/types";
 import { Jobs } from "./jobs.svelte";
 
@@ -10,7 +11,6 @@ class Library {
   /** Null until first read: a long record takes a while to be summed up. */
   runs: Run[] | null = $state.raw(null);
   health: Health | null = $state.raw(null);
-  problem: string | null = $state(null);
   /** Flight and plan the operator works with. */
   trajectory: string | null = $state(null);
   plan: string | null = $state(null);
@@ -19,30 +19,39 @@ class Library {
   readonly #plans = new Jobs<Plan>(api.plans, api.plan);
   readonly comparisons = new Jobs<Comparison>(api.comparisons, api.comparison);
 
+  /** What could not be read, by what it is. */
+  #problems: Readonly<Record<string, string>> = $state.raw({});
+  readonly #reads = new Map<string, number>();
+  #retry = 0;
+  #misses = 0;
+
+  /** Why what is shown may not be what the server has; null where all of it was read. */
+  readonly problem: string | null = $derived(Object.values(this.#problems)[0] ?? this.#plans.problem ?? this.comparisons.problem);
   readonly plans = $derived(this.#plans.all);
   readonly chosenTrajectory = $derived(this.trajectories.find(({ sha256 }) => sha256 === this.trajectory) ?? null);
   readonly chosenPlan = $derived(this.plans.find(({ id }) => id === this.plan) ?? null);
 
-  /** Reads what every page needs; a part that fails says so and leaves the others. */
+  /** Reads what every page needs; a part that fails says so, leaves the others, and all is tried again until it is read. */
   async refresh(): Promise<void> {
-    this.problem = null;
+    clearTimeout(this.#retry);
     await Promise.all([
-      this.#read(async () => (this.rigs = await api.rigs())),
-      this.#read(async () => (this.methods = await api.methods())),
-      this.#read(async () => (this.health = await api.health())),
+      this.refreshRigs(),
+      this.#read("methods", api.methods, (methods) => (this.methods = methods)),
+      this.#read("health", api.health, (health) => (this.health = health)),
       this.refreshTrajectories(),
-      this.refreshPlans(),
+      this.#plans.refresh(),
+      ...(this.#problems["runs"] === undefined ? [] : [this.refreshRuns()]),
+      ...(this.comparisons.problem === null ? [] : [this.comparisons.refresh()]),
     ]);
+    this.#misses = this.problem === null ? 0 : this.#misses + 1;
+    clearTimeout(this.#retry);
+    if (this.#misses > 0) this.#retry = window.setTimeout(() => void this.refresh(), backoffMs(this.#misses, Math.random()));
   }
 
-  refreshRigs = (): Promise<void> => this.#read(async () => (this.rigs = await api.rigs()));
-  refreshTrajectories = (): Promise<void> => this.#read(async () => (this.trajectories = await api.trajectories()));
-  refreshRuns = (): Promise<void> => this.#read(async () => (this.runs = await api.runs()));
-
-  async refreshPlans(): Promise<void> {
-    await this.#plans.refresh();
-    this.problem ??= this.#plans.problem;
-  }
+  refreshRigs = (): Promise<void> => this.#read("rigs", api.rigs, (rigs) => (this.rigs = rigs));
+  refreshTrajectories = (): Promise<void> =>
+    this.#read("trajectories", api.trajectories, (trajectories) => (this.trajectories = trajectories));
+  refreshRuns = (): Promise<void> => this.#read("runs", api.runs, (runs) => (this.runs = runs));
 
   async upload(file: File, convention: string): Promise<Trajectory> {
     this.uploading = { name: file.name, fraction: 0 };
@@ -71,7 +80,7 @@ class Library {
 
   async cancelPlan(id: string): Promise<void> {
     await api.cancelPlan(id);
-    await this.refreshPlans();
+    await this.#plans.refresh();
   }
 
   async compare(trajectory: string, rig: string, methods: string[]): Promise<Comparison> {
@@ -86,11 +95,18 @@ class Library {
     await this.comparisons.refresh();
   }
 
-  async #read(read: () => Promise<unknown>): Promise<void> {
+  /** Of two reads of one list the one asked for last counts, whichever is answered first. */
+  async #read<T>(what: string, ask: () => Promise<T>, take: (answer: T) => void): Promise<void> {
+    const turn = (this.#reads.get(what) ?? 0) + 1;
+    this.#reads.set(what, turn);
     try {
-      await read();
+      const answer = await ask();
+      if (this.#reads.get(what) !== turn) return;
+      take(answer);
+      const { [what]: _, ...others } = this.#problems;
+      this.#problems = others;
     } catch (error) {
-      this.problem = messageOf(error);
+      if (this.#reads.get(what) === turn) this.#problems = { ...this.#problems, [what]: messageOf(error) };
     }
   }
 }

@@ -5,6 +5,7 @@ import { NO_LINK, reduce, type Link } from "../adapter/link";
 import { BROWSER, RECORD_MS, Stream, type Listener } from "../adapter/stream";
 import { sampleAt, type Batch, type Sample } from "../adapter/telemetry";
 import type { ReplayOf } from "../contract/types";
+import type { TimeAxis } from "../rules/axis";
 import type { Feed } from "./feed";
 
 /** Thirty a second, for two minutes: what was played before a seek stays in sight. */
@@ -19,6 +20,10 @@ export class Replay implements Feed {
   at = $state(0);
   playing = $state(true);
   speed = $state(1);
+
+  axis: TimeAxis = $state.raw({ kind: "run", zeroS: 0 });
+  /** A record does not grow old. */
+  readonly stale = false;
 
   readonly history = new History(HISTORY);
   readonly #stream: Stream;
@@ -72,6 +77,7 @@ export class Replay implements Feed {
     for (let row = 0; row < batch.count; row++) this.history.push(sampleAt(batch, row));
     this.latest = sampleAt(batch, batch.count - 1);
     this.at = Math.max(0, this.latest.wallS - (this.of?.started ?? this.latest.wallS));
+    this.axis = { kind: "run", zeroS: this.latest.timeS - this.at };
     this.frames++;
   }
 }

@@ -4,9 +4,11 @@ import { History } from "../adapter/history";
 import { NO_LINK, reduce, type Link, type LinkEvent } from "../adapter/link";
 import { Stream } from "../adapter/stream";
 import { sampleAt, type Batch, type Sample } from "../adapter/telemetry";
-import type { CommandOut, Lease, LeaseToken, Snapshot } from "../contract/types";
+import type { Lease, LeaseToken, Snapshot } from "../contract/types";
+import type { TimeAxis } from "../rules/axis";
+import { dataAgeMs, freshness, looksStale, type Freshness } from "../rules/freshness";
+import { settled, type Urgent } from "../rules/stopping";
 import type { Feed } from "./feed";
-import { dataAgeMs, freshness, type Freshness } from "../rules/freshness";
 
 /** Thirty a second, for a minute. */
 const HISTORY = 1800;
@@ -17,6 +19,13 @@ export interface Note {
   id: number;
   tone: "info" | "problem";
   text: string;
+}
+
+/** A Stop or E-stop that was not answered; `rig` is null where none was known to send it to. */
+export interface Unconfirmed {
+  what: Urgent;
+  rig: string | null;
+  why: string;
 }
 
 class Operated implements Feed {
@@ -30,12 +39,17 @@ class Operated implements Feed {
   freshness: Freshness = $state("stale");
   busy = $state(false);
   notes: Note[] = $state.raw([]);
+  /** Kept until one is confirmed, the rig is seen to have stopped, or a person puts it away. */
+  unconfirmed: Unconfirmed | null = $state.raw(null);
   history = new History(HISTORY);
 
   #stream: Stream | null = null;
   #token: LeaseToken | null = $state.raw(null);
   #timers: number[] = [];
   #noteId = 0;
+  #presses = 0;
+  /** The newest press of each kind that was answered. */
+  readonly #confirmed: Record<Urgent, number> = { stop: 0, estop: 0 };
 
   readonly session = $derived(this.link.session);
   readonly state = $derived(this.link.session?.state ?? null);
@@ -44,6 +58,10 @@ class Operated implements Feed {
   readonly unacknowledged = $derived(this.waiting.length);
   /** Ours is the lease while we are its holder, in the epoch we were given. */
   readonly leased = $derived(this.#token !== null && holds(this.session, this.#token));
+
+  readonly stale = $derived(looksStale(this.link, this.freshness));
+  readonly #lastS = $derived(this.stale && this.ageMs !== null ? Math.floor(this.ageMs / 1000) : 0);
+  readonly axis: TimeAxis = $derived({ kind: "age", ageS: this.#lastS });
 
   open(name: string): void {
     if (this.name === name) return;
@@ -87,8 +105,13 @@ class Operated implements Feed {
   }
 
   /** Stop and E-stop have their own requests: they need no lease and wait for no other command. */
-  stop = (): Promise<void> => this.#urgent(api.stop);
-  estop = (): Promise<void> => this.#urgent(api.estop);
+  stop = (): Promise<void> => this.#urgent("stop", this.name);
+  estop = (): Promise<void> => this.#urgent("estop", this.name);
+
+  /** Presses once more what was not confirmed, at the rig it was meant for. */
+  async pressAgain(): Promise<void> {
+    if (this.unconfirmed) await this.#urgent(this.unconfirmed.what, this.unconfirmed.rig ?? this.name);
+  }
 
   async takeLease(): Promise<void> {
     const name = this.name;
@@ -146,6 +169,7 @@ class Operated implements Feed {
   #link(event: LinkEvent): void {
     this.link = reduce(this.link, event);
     if (event.type !== "frame") this.#look();
+    if (event.type === "opened" || event.type === "session") this.#settle(event.session.state);
     // Another operator granted what we asked for.
     const lease = this.session?.lease;
     if (this.name !== null && lease?.holder === me() && lease.epoch !== this.#token?.epoch) this.#own(this.name, lease);
@@ -163,15 +187,32 @@ class Operated implements Feed {
     this.frames++;
   }
 
-  async #urgent(send: (rig: string) => Promise<CommandOut>): Promise<void> {
-    if (this.name === null) return;
-    try {
-      await send(this.name);
-    } catch (error) {
-      // Asked of a rig that does not move: said, but no alarm.
-      if (error instanceof ApiError && error.status === 409) this.note("info", error.message);
-      else this.note("problem", `Not stopped: ${messageOf(error)}`);
+  async #urgent(what: Urgent, rig: string | null): Promise<void> {
+    const press = ++this.#presses;
+    if (rig === null) {
+      this.unconfirmed = { what, rig, why: "this console knows no rig yet" };
+      return;
     }
+    try {
+      await (what === "stop" ? api.stop(rig) : api.estop(rig));
+      this.#answered(what, rig, press);
+    } catch (error) {
+      if (error instanceof ApiError && error.status === 409) {
+        // Asked of a rig that does not move: said, but no alarm.
+        this.#answered(what, rig, press);
+        this.note("info", error.message);
+      } else if (press > this.#confirmed[what]) this.unconfirmed = { what, rig, why: messageOf(error) };
+    }
+  }
+
+  #answered(what: Urgent, rig: string, press: number): void {
+    this.#confirmed[what] = Math.max(this.#confirmed[what], press);
+    if (this.unconfirmed?.what === what && (this.unconfirmed.rig ?? rig) === rig) this.unconfirmed = null;
+  }
+
+  #settle(state: string): void {
+    const { unconfirmed, name } = this;
+    if (unconfirmed && (unconfirmed.rig ?? name) === name && settled(unconfirmed.what, state)) this.unconfirmed = null;
   }
 
   async #ask(name: string, refusal: ApiError): Promise<void> {

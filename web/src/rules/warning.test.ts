@@ -1,0 +1,35 @@
+import { expect, it } from "vitest";
+import { NO_LINK, reduce, type Link } from "../adapter/link";
+import type { Snapshot } from "../contract/types";
+import { linkWarning, listsWarning, lost } from "./warning";
+
+const SESSION = { state: "running" } as Snapshot;
+const opened = reduce(reduce(NO_LINK, { type: "connecting" }), { type: "opened", session: SESSION });
+const closed = reduce(opened, { type: "closed", reason: "gone" });
+
+it("a page that just opened has lost nothing; a second attempt has", () => {
+  const first: Link = reduce(NO_LINK, { type: "connecting" });
+  expect([NO_LINK, first, opened].map(lost)).toEqual([false, false, false]);
+  const failed = reduce(first, { type: "closed", reason: "refused" });
+  expect([failed, reduce(failed, { type: "connecting" })].map(lost)).toEqual([true, true]);
+  expect([closed, reduce(closed, { type: "connecting" })].map(lost)).toEqual([true, true]);
+});
+
+it("never says that Stop works where the connection is lost", () => {
+  const text = linkWarning(closed, true) ?? "";
+  expect(text).toContain("cannot reach the rig");
+  expect(text).toContain("hardware E-stop");
+  expect(text).not.toMatch(/work/);
+  expect(linkWarning(closed, false)).toBe(text);
+});
+
+it("old data on an open connection disables motion, not Stop", () => {
+  expect(linkWarning(opened, true)).toMatch(/Motion is disabled\. Stop and E-stop are sent/);
+  expect(linkWarning(opened, false)).toBeNull();
+});
+
+it("lists that could not be read say what that means for Stop where no rig is known", () => {
+  expect(listsWarning(null, false)).toBeNull();
+  expect(listsWarning("The server does not answer", true)).toBe("Not up to date: The server does not answer. Trying again.");
+  expect(listsWarning("The server does not answer", false)).toContain("cannot be sent from here, use the hardware E-stop");
+});

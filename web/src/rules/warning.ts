@@ -1,0 +1,28 @@
+/** What the console warns of on every page: a lost connection, old data, lists that could not be read. */
+import type { Link } from "../adapter/link";
+
+/** Whether the connection is lost; the first attempt of a page that just opened is none. */
+export function lost(link: Link): boolean {
+  return link.phase === "closed" || (link.phase === "connecting" && (link.session !== null || link.attempt > 1));
+}
+
+export function linkWarning(link: Link, stale: boolean): string | null {
+  if (lost(link)) {
+    return (
+      "Connection lost, trying again: what is shown is the last known, not the rig now. Stop and E-stop cannot reach the rig " +
+      "from here: use the hardware E-stop. A rig whose operator or server stays silent holds, then brakes, by itself."
+    );
+  }
+  if (!stale) return null;
+  return (
+    "Data is stale: what is shown is the last known, not the rig now. Motion is disabled. Stop and E-stop are sent; " +
+    "where one is not confirmed, the console says so."
+  );
+}
+
+/** `known`: whether the console has a rig to speak to. */
+export function listsWarning(problem: string | null, known: boolean): string | null {
+  if (problem === null) return null;
+  const said = `Not up to date: ${problem}. Trying again.`;
+  return known ? said : `${said} No rig is known yet: Stop and E-stop cannot be sent from here, use the hardware E-stop.`;
+}

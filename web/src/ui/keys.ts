@@ -1,0 +1,13 @@
+/** A key press of the page as the rules speak of it. */
+import type { Key } from "../rules/keys";
+
+const TEXT = "textarea, [contenteditable], input:is(:not([type]), [type='text'], [type='search'])";
+/** A slider is none: Space does nothing to it. */
+const CONTROL = "button, a, select, summary, input:not([type='range'])";
+
+export function keyOf(event: KeyboardEvent): Key {
+  const { target, key, repeat } = event;
+  const within = (selector: string): boolean => target instanceof Element && target.closest(selector) !== null;
+  const focus = within(TEXT) ? "text" : within(CONTROL) ? "control" : "none";
+  return { key, repeat, focus, modified: event.ctrlKey || event.altKey || event.metaKey };
+}
