@@ -160,8 +160,8 @@ class RigHost:
 
     def lane(self, command: Command, who: str) -> Coroutine[Any, Any, wire.Reply]:
         """E-stop or stop by its flag, now; the coroutine, which is to be awaited, only waits for the loop's answer."""
-        asked = self._flag(command, who)  # before anything else is looked at
-        return self._lane_done(command, asked, self._memory().snapshot(wait=False))
+        before = self._memory().snapshot(wait=False)  # microseconds; afterwards it may tell of the stop itself
+        return self._lane_done(command, self._flag(command, who), before)
 
     # --- what it shows ---
 
@@ -342,7 +342,8 @@ class RigHost:
 
     async def _lane_done(self, command: Command, asked: int, published: bytes | None) -> wire.Reply:
         header = self._memory().header
-        before = self._state() if published is None or self._dead else wire.decode_published(published).state
+        told = self._published() if published is None else wire.decode_published(published)
+        before = State.DISCONNECTED.value if self._dead else told.state
         deadline = time.monotonic() + REPLY_S
         while int(header[f"{command}_done_ns"][0]) < asked:
             if self._dead or time.monotonic() > deadline:

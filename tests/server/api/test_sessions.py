@@ -49,8 +49,7 @@ def test_a_flight_from_upload_to_its_end_with_hold_resume_and_audit(operator: Op
     assert operator.command("hold").json()["state_after"] == "held"
     assert operator.command("resume").json()["state_after"] == "running"
     session = operator.wait("armed")
-    late = ("lateness", "missed_deadlines")  # a starved machine may be
-    assert [alarm["code"] for alarm in session["alarms"] if alarm["code"] not in late] == []
+    assert [a["code"] for a in session["alarms"] if a["severity"] != "warning"] == []  # a starved machine may be late
     log = server.http.get("/audit", params={"rig": "vertical-4", "limit": 5}).json()
     assert [(line["command"], line["state_before"], line["state_after"]) for line in reversed(log)] == [
         ("load", "idle", "ready"),

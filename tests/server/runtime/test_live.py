@@ -5,13 +5,14 @@ import contextlib
 import math
 import socket
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from server.runtime.config import GuardConfig, LiveConfig, Tolerance
+from server.runtime.config import LiveConfig, Tolerance
 from server.runtime.host import RigHost
 from server.runtime.live_buffer import LiveBuffer
 from server.runtime.live_packet import (
@@ -27,12 +28,13 @@ from server.runtime.live_packet import (
     encode_sample,
 )
 from solver.attitude import dcm_from_quaternion, euler_from_ned, quaternion_from_euler, quaternion_from_ned
+from tests.server.runtime import rigs
 from tests.server.runtime.rigs import config_of, hosted
 from tests.server.runtime.test_host import within_limits
 
 NAN = math.nan
 # The machine of the tests may starve the sender: bridge longer than on a quiet one.
-PATIENT = GuardConfig(stale_ms=Tolerance(None, None), lateness_ms=Tolerance(None, 500.0))
+PATIENT = replace(rigs.PATIENT, stale_ms=Tolerance(None, None))
 
 
 def flight(t: float, swing_deg: float = 20.0) -> tuple[np.ndarray, np.ndarray]:
