@@ -13,15 +13,13 @@ from numpy.typing import NDArray
 
 from solver._jit import kernel
 from solver.limits import ACCELERATION, MAX, MIN, approach_rate, limit_box, limit_table
-from solver.methods import METHODS
 from solver.planner.basis import WIDTH, Basis, spline_basis
 from solver.planner.marks import limit_marks
 from solver.planner.options import PlanOptions
-from solver.planner.preview_flight import PreviewFlight
 from solver.planner.programme import Equality, QuadraticProgramme, solve_programme
 from solver.planner.refine import MET, NEAR, STRIDE, Limits, cost_weights, rig_limits, worst
 from solver.planner.rows import ROW, Flags, displaced, error_bands, limit_rows, over_limits
-from solver.planner.way import PreviewOptions
+from solver.planner.stepped import Stepped
 from solver.rig import Rig
 from solver.solution import EXACT
 from solver.start import start_pose
@@ -33,9 +31,6 @@ ERROR_WEIGHT = 1e4  # [1/rad^2] beside rates and accelerations squared as shares
 SLACK_COST = 1e5  # of a limit exceeded by its whole: the limits win over the attitude
 LARGEST_PADDING = 4.0  # [s]; beyond it the whole flight starts again from a path inside the limits
 LONGEST = 60.0  # [s] of a stretch whose frames are all set free at once
-# [s] known and [s] between two ways, of the previews that a hopeless flight begins from
-FORESIGHTS = ((4.0, 0.2), (8.0, 0.5))
-FORESEEN = 600.0  # [s] of a flight that they are tried for: they take a tenth of its length
 EXACT_ERROR = 1e-12  # [rad] above which a sample counts as limited
 APART = 8  # samples of the exact path at least between two stretches
 TRUST = 0.5  # [rad] a frame moves in one iteration at most
@@ -53,8 +48,9 @@ class BestEffort:
 
 
 def least_error(
-    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None = None
-) -> BestEffort:
+    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None = None,
+    stepped: Stepped | None = None,
+) -> BestEffort:  # fmt: skip
     """Bring the exact path angles (n, 4) [rad] inside the limits, giving up the attitude where that cannot be helped.
 
     start (4,) [rad]: the first pose, kept as it is.
@@ -72,7 +68,7 @@ def least_error(
     stretches = _merged([_Stretch(int(k), int(k) + 1, PADDING) for k in bad], time)
 
     def again() -> BestEffort:  # what cannot be mended place by place
-        return afresh(time, attitude, angles, rig, options, start)
+        return afresh(time, attitude, angles, rig, options, start, stepped)
 
     freed: dict[tuple[int, int], tuple[Array, NDArray[np.bool_], float]] = {}
     while True:
@@ -104,29 +100,25 @@ def least_error(
 
 
 def afresh(
-    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None
-) -> BestEffort:
+    time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None,
+    stepped: Stepped | None = None,
+) -> BestEffort:  # fmt: skip
     """The least error that is found without a path near the limits to begin from; `angles` as `feasible` wants them."""
-    return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start), rig, options, start)
+    return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start, stepped), rig, options, start)
 
 
-def feasible(time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None) -> Array:
+def feasible(
+    time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None, stepped: Stepped | None = None
+) -> Array:
     """A path (n, 4) [rad] inside every limit, whatever its attitude error.
 
-    A four-axis rig's by the step method `exact`, or by `preview`, which may know much of the flight here, where that
-    comes closer; a three-axis rig's by following `angles` frame by frame.
+    A four-axis rig's is the closest of `stepped`; a three-axis rig's follows `angles` frame by frame.
     """
     if not rig.geometry.redundant:
         x = np.empty_like(angles)
         follow(limit_table(rig), time, angles, x)
         return x
-    method = METHODS["exact"]
-    ways = [method.stepper(rig, method.options(), start, attitude[0]).block(time, attitude).angles]
-    if time[-1] - time[0] <= FORESEEN:
-        for preview_s, replan_s in FORESIGHTS:
-            options = PreviewOptions(preview_s=preview_s, replan_s=replan_s)
-            ways.append(PreviewFlight(rig, options, start, time, attitude).block(time, attitude).angles)
-    return min(ways, key=lambda way: float(np.mean(attitude_errors(payload_attitudes(rig, way), attitude)[0] ** 2)))
+    return (stepped or Stepped(time, attitude, rig, start)).closest()
 
 
 def from_feasible(

@@ -10,13 +10,16 @@ from solver.planner.chain import Avoid, Chain, Programme
 from solver.planner.inertial import BREADTHS, attainable_rates, first_poses, inertial_chain
 from solver.planner.nodes import lattice
 from solver.planner.options import PlanOptions
-from solver.planner.path import Path, refine_path, smooth_curve, stage_samples
-from solver.planner.refine import locked, missed_rate
+from solver.planner.path import Path, overrun, refine_path, smooth_curve, stage_samples
+from solver.planner.refine import MET, locked, missed_rate
+from solver.planner.stepped import Stepped
 from solver.planner.three_axis import turns_into_range
 from solver.rig import Rig
+from solver.verify import attitude_errors, payload_attitudes
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
+EXACT = 1e-12  # [rad] of attitude error: below it a sample counts as exact
 AVOID_RADIUS = math.radians(30.0)
 AVOID_COST = 5.0  # [1/s], beside rates squared as shares of their limits
 AVOID_TIME = 0.4  # [s] before and after
@@ -41,6 +44,7 @@ class Search:
         self.margin_gain = 1.0
         self.chains = 0
         self.samples = stage_samples(time, options.stage)
+        self.stepped = Stepped(time, attitude, rig, start)
 
     def chain(self, grid: float, slack: float = 0.0, stretch: float = 1.0, excess: float = 0.0) -> Chain:
         """The cheapest chain on a grid [rad]; turns of the wide frames counted only as far as their ranges need it."""
@@ -79,8 +83,24 @@ class Search:
     def refine(self, chain: Chain) -> Path:
         """A path along a chain."""
         self.chains += 1
+        return self._refined(self.curve(chain))
+
+    def refine_step(self, way: Array) -> Path | None:
+        """A path next to one of `stepped`, or that itself; None where it is not exact, or a start rate is asked for.
+
+        No flight is refused that a method flies which looks at less of it.
+        """
+        error, _ = attitude_errors(payload_attitudes(self.rig, way), self.attitude)
+        if self.start_rate is not None or error.max() > EXACT or overrun(self.time, way, self.rig)[0] > MET:
+            return None
+        path = self._refined(way.copy())
+        if overrun(self.time, path.angles, self.rig)[0] <= MET:
+            return path
+        return Path(way.copy(), (), np.zeros(len(way), np.int32))
+
+    def _refined(self, angles: Array) -> Path:
         return refine_path(
-            self.time, self.attitude, self.curve(chain), self.rig, self.options, start=self.start is not None,
+            self.time, self.attitude, angles, self.rig, self.options, start=self.start is not None,
             start_rate=self.start_rate, progress=self._report(0.5, 0.5),
         )  # fmt: skip
 

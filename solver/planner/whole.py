@@ -27,6 +27,7 @@ Progress = Callable[[int, int], None]
 STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a chain
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
 STILL = 1e-14  # range of an entry of C up to which an attitude counts as constant: what rounding leaves
+STEPS_AFTER = 2  # attempts, before the step method is asked: it is quick, and what it flies need not be searched for
 EXCESS = 100.0  # cost of going over a rate limit by its whole, for a flight without a chain
 
 
@@ -153,6 +154,8 @@ def _fly(search: Search) -> _Flown:
         return _Flown(effort.angles, np.zeros(n, np.int32), effort.limited, decided_by, blocking, grid)
     best: tuple[float, Path] | None = None
     for attempt in range(options.alternatives + 1):
+        if attempt == STEPS_AFTER and (stepped := search.refine_step(search.stepped.exact())) is not None:
+            return _Flown(stepped.angles, stepped.iterations, none, "checked", None, grid)
         if attempt > 0:
             following = search.alternative(attempt, grid, slack)
             if not following.found:
@@ -176,7 +179,10 @@ def _fly(search: Search) -> _Flown:
         blocking, decided_by = Blocking(float(time[1]), FRAMES[int(np.argmax(off))], "rate"), "start_rate"
     if not options.best_effort:
         return _Flown(path.angles, path.iterations, none, decided_by, blocking, grid)
-    effort = least_error(time, search.attitude, path.angles, rig, options, search.start)
+    for way in search.stepped.foreseen():
+        if (stepped := search.refine_step(way)) is not None:
+            return _Flown(stepped.angles, stepped.iterations, none, "checked", None, grid)
+    effort = least_error(time, search.attitude, path.angles, rig, options, search.start, search.stepped)
     if not effort.limited.any() and search.start_rate is None:  # not even that gave the attitude up
         return _Flown(effort.angles, path.iterations, effort.limited, "checked", None, grid)
     return _Flown(effort.angles, path.iterations, effort.limited, decided_by, blocking, grid)
@@ -193,8 +199,8 @@ def _least_error(search: Search) -> BestEffort:
         if overrun(time, search.curve(chain), rig)[0] > BROKEN:
             break
         path = search.refine(chain)
-        return least_error(time, attitude, path.angles, rig, options, search.start)
-    return afresh(time, attitude, np.empty((0, 4)), rig, options, search.start)
+        return least_error(time, attitude, path.angles, rig, options, search.start, search.stepped)
+    return afresh(time, attitude, np.empty((0, 4)), rig, options, search.start, search.stepped)
 
 
 STATEMENTS = {
