@@ -51,7 +51,7 @@ def some_limits(seed: int) -> Rig:
     return Rig("some", geometry, (frames[0], frames[1], frames[2], frames[3]))
 
 
-@pytest.mark.parametrize("seed", [2, 7, 8, 15, 16, 23, 27, 28, 31, 39])
+@pytest.mark.parametrize("seed", [7, 15, 16, 23, 31])
 def test_what_the_step_method_flies_is_planned(seed: int) -> None:
     rig = some_limits(seed)
     time, attitude = tumble(seed, 12.0)
