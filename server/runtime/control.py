@@ -64,7 +64,7 @@ class ControlServer:
     def _read(self, fd: int) -> None:
         client = self._clients[fd]
         try:
-            packet = client.recv(1 << 16)
+            packet = client.recv(wire.MAX_REQUEST)
         except BlockingIOError:
             return
         except OSError:

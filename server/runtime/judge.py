@@ -70,12 +70,18 @@ class Judge:
         elif disobeys and asked:
             loop.let_drive_brake(now)
             why = "the order to enable was not confirmed" if status & Status.UNCONFIRMED else "it took the order"
-            self.trip(_said("drive_not_enabled", f"drive {loop.drive.name} does not follow commands: {why}"))
+            self.trip(
+                _said("drive_not_enabled", f"drive {loop.drive.name} does not follow commands: {why}", trips=True)
+            )
         elif disobeys:
             why = "it still follows commands" if status & Status.ENABLED else "the order was not confirmed"
-            self.trip(_said("drive_not_disabled", f"drive {loop.drive.name} was told to brake or power off: {why}"))
+            self.trip(
+                _said(
+                    "drive_not_disabled", f"drive {loop.drive.name} was told to brake or power off: {why}", trips=True
+                )
+            )
         elif loop.enabled and status & Status.STALE_WRITE:
-            self.warn(Finding("stale_write", False, "the drive refused an old command", None, math.nan, math.nan, ""))
+            self.warn(_said("stale_write", "the drive refused an old command"))
 
     def measured(self, now: float) -> float:
         """The tracking error [rad]; nan where nothing is followed."""
@@ -120,9 +126,9 @@ class Judge:
         error = bytes(header["recorder_error"][0])
         free = int(header["recorder_free_bytes"][0]) / 1e6
         if now - int(header["recorder_beat_ns"][0]) / 1e9 > _RECORDER_SILENT_S:
-            self.warn(Finding("recorder_lost", False, "the recorder does not run", None, math.nan, math.nan, ""))
+            self.warn(_said("recorder_lost", "the recorder does not run"))
         if error:
-            self.warn(Finding("record_error", False, error.decode("utf-8", "replace"), None, math.nan, math.nan, ""))
+            self.warn(_said("record_error", error.decode("utf-8", "replace")))
         if 0 < free < loop.config.min_free_mb:
             text = f"{free:.0f} MB free where runs are recorded"
             self.warn(Finding("disk_low", False, text, None, free, loop.config.min_free_mb, "MB"))
@@ -144,10 +150,10 @@ class Judge:
             ("clock_steps", "the live source began anew, or its clock was set"),
         ):
             if counts[word]:
-                self.warn(Finding(f"live_{word}", False, text, None, math.nan, math.nan, ""))
+                self.warn(_said(f"live_{word}", text))
         if live.strangers:
             text = "samples of a second live source, beside the one that is followed: not used"
-            self.warn(Finding("live_second_source", False, text, None, math.nan, math.nan, ""))
+            self.warn(_said("live_second_source", text))
 
     def silences(self, now: float) -> None:
         """Who holds the lease, and the server: a silent one means hold, then stop, then disarm."""
@@ -198,5 +204,6 @@ class Judge:
         self._loop.alarm(found.code, severity, found.message, frame=found.frame, value=value, limit=limit, unit=unit)
 
 
-def _said(code: str, message: str) -> Finding:
-    return Finding(code, True, message, None, math.nan, math.nan, "")
+def _said(code: str, message: str, *, trips: bool = False) -> Finding:
+    """A finding without a figure."""
+    return Finding(code, trips, message, None, math.nan, math.nan, "")

@@ -6,9 +6,8 @@ from typing import Any
 
 from server.runtime import wire
 from server.runtime.place import Place, control_socket
+from server.runtime.wire import MAX_REQUEST as MAX_REQUEST
 from server.session.lease import LeaseToken
-
-MAX_REQUEST = 1 << 16  # [bytes] what the rig process reads of a packet; of a longer one it would see a part
 
 
 class RequestTooLargeError(ValueError):

@@ -8,6 +8,8 @@ import msgspec
 from server.session.alarms import Alarm
 from server.session.lease import Lease, LeaseToken
 
+MAX_REQUEST = 1 << 16  # [bytes] what the rig process reads of a packet; of a longer one it would see a part
+
 
 @dataclass(frozen=True)
 class Request:

@@ -19,7 +19,7 @@ from solver.planner.options import PlanOptions
 from solver.planner.programme import Equality, QuadraticProgramme, solve_programme
 from solver.planner.refine import MET, NEAR, STRIDE, Limits, cost_weights, rig_limits, worst
 from solver.planner.rows import ROW, Flags, displaced, error_bands, limit_rows, over_limits
-from solver.planner.stepped import Stepped
+from solver.planner.stepped import EXACT_ERROR, Stepped
 from solver.rig import Rig
 from solver.solution import EXACT
 from solver.start import start_pose
@@ -31,7 +31,6 @@ ERROR_WEIGHT = 1e4  # [1/rad^2] beside rates and accelerations squared as shares
 SLACK_COST = 1e5  # of a limit exceeded by its whole: the limits win over the attitude
 LARGEST_PADDING = 4.0  # [s]; beyond it the whole flight starts again from a path inside the limits
 LONGEST = 60.0  # [s] of a stretch whose frames are all set free at once
-EXACT_ERROR = 1e-12  # [rad] above which a sample counts as limited
 APART = 8  # samples of the exact path at least between two stretches
 TRUST = 0.5  # [rad] a frame moves in one iteration at most
 ITERATIONS = 25

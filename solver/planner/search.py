@@ -12,14 +12,13 @@ from solver.planner.nodes import lattice
 from solver.planner.options import PlanOptions
 from solver.planner.path import Path, overrun, refine_path, smooth_curve, stage_samples
 from solver.planner.refine import MET, locked, missed_rate
-from solver.planner.stepped import Stepped
+from solver.planner.stepped import EXACT_ERROR, Stepped
 from solver.planner.three_axis import turns_into_range
 from solver.rig import Rig
 from solver.verify import attitude_errors, payload_attitudes
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
-EXACT = 1e-12  # [rad] of attitude error: below it a sample counts as exact
 AVOID_RADIUS = math.radians(30.0)
 AVOID_COST = 5.0  # [1/s], beside rates squared as shares of their limits
 AVOID_TIME = 0.4  # [s] before and after
@@ -91,7 +90,7 @@ class Search:
         No flight is refused that a method flies which looks at less of it.
         """
         error, _ = attitude_errors(payload_attitudes(self.rig, way), self.attitude)
-        if self.start_rate is not None or error.max() > EXACT or overrun(self.time, way, self.rig)[0] > MET:
+        if self.start_rate is not None or error.max() > EXACT_ERROR or overrun(self.time, way, self.rig)[0] > MET:
             return None
         path = self._refined(way.copy())
         if overrun(self.time, path.angles, self.rig)[0] <= MET:

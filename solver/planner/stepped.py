@@ -12,6 +12,7 @@ from solver.verify import attitude_errors, payload_attitudes
 Array = NDArray[np.float64]
 # [s] known and [s] between two ways, of the previews
 FORESIGHTS = ((4.0, 0.2), (8.0, 0.5))
+EXACT_ERROR = 1e-12  # [rad] of attitude error above which a sample is not exact
 FORESEEN = 600.0  # [s] of a flight that they are tried for: they take a tenth of its length
 
 

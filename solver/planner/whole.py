@@ -144,14 +144,12 @@ def _fly(search: Search) -> _Flown:
     if not chain.found:
         blocking = Blocking(float(time[search.samples[chain.reached]]), FRAMES[chain.frame], LIMITS[chain.limit])
         decided_by = blocking.limit if blocking.limit != "acceleration" else "start_rate"  # only its inertia closes so
-    if not chain.found and not options.best_effort:
         angles = np.repeat(rig.home[None], n, axis=0)
         limited = np.full(n, limited_code(chain.frame, chain.limit), np.int16)
-        return _Flown(angles, np.zeros(n, np.int32), limited, LIMITS[chain.limit], blocking, grid)
-    if not chain.found:
-        blocking = Blocking(float(time[search.samples[chain.reached]]), FRAMES[chain.frame], LIMITS[chain.limit])
-        effort = _least_error(search)
-        return _Flown(effort.angles, np.zeros(n, np.int32), effort.limited, decided_by, blocking, grid)
+        if options.best_effort:
+            effort = _least_error(search)
+            angles, limited = effort.angles, effort.limited
+        return _Flown(angles, np.zeros(n, np.int32), limited, decided_by, blocking, grid)
     best: tuple[float, Path] | None = None
     for attempt in range(options.alternatives + 1):
         if attempt == STEPS_AFTER and (stepped := search.refine_step(search.stepped.exact())) is not None:
