@@ -12,5 +12,5 @@ format: ## puts the Python sources in order
 	@.venv/bin/ruff format . && .venv/bin/ruff check --fix .
 
 clean: ## removes what set-up and tests made
-	rm -rf .venv .make build dist server/console web/node_modules .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv .make build dist server/fullpose_server/console web/node_modules .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find solver server -name __pycache__ -prune -exec rm -rf {} +

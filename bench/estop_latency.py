@@ -22,11 +22,11 @@ import numpy as np
 
 from bench.machine import machine
 from bench.rig_load import Viewer, loaded, post, served
-from server.cli._event_loop import before_others
-from server.runtime.config import RigConfig
-from server.runtime.host import RigHost
-from solver.rig import builtin_rigs
-from tests.server.runtime.rigs import Operator, plan_of, written
+from fullpose.rig import builtin_rigs
+from fullpose_server.cli._event_loop import before_others
+from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.supervisor.rig_client import RigHost
+from tests.fullpose_server.runtime.rigs import Operator, plan_of, written
 
 RIG = "vertical-4"
 

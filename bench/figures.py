@@ -6,10 +6,10 @@ import matplotlib as mpl
 import numpy as np
 
 from bench.published import CLOSED, EXACT, PAPER, POSITION_ONLY, RIGS, run
-from solver.rig import FRAMES
-from solver.scenarios import SCENARIOS
-from solver.solution import Solution
-from solver.verify import differences
+from fullpose.rig import FRAMES
+from fullpose.scenarios import SCENARIOS
+from fullpose.solution import Solution
+from fullpose.verify import differences
 
 mpl.use("svg")
 mpl.rcParams.update(

@@ -42,10 +42,10 @@ def main() -> None:
 
 def case(method: str, seconds: float, rig_name: str) -> dict[str, float]:
     """Solve one flight in this process."""
-    from solver.attitude import dcm_from_quaternion
-    from solver.rig import builtin_rigs
-    from solver.scenarios import random_flight
-    from solver.solve import solve
+    from fullpose.attitude import dcm_from_quaternion
+    from fullpose.rig import builtin_rigs
+    from fullpose.scenarios import random_flight
+    from fullpose.solve import solve
 
     rig = builtin_rigs()[rig_name]
     at, q = random_flight(1, seconds, 1000.0, 0.5)

@@ -3,7 +3,7 @@
     python -m bench.flights --seeds 24 --previews 5 --out docs/guide/flights.md --plot docs/guide/figures/flights.svg
 
 Random flights through all attitudes, 20 s at 500 Hz, at three body rates on three rigs (`--seeds` of each: 24 make
-216), and the flights of examples/flights. A flight is flown when every sample is exact (1e-9 deg) and `solver.verify`
+216), and the flights of examples/flights. A flight is flown when every sample is exact (1e-9 deg) and `fullpose.verify`
 finds no limit exceeded. Live previews, which simulate their re-planning as well, take the first `--previews` seeds.
 """
 
@@ -18,18 +18,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.machine import machine
-from server.store.trajectory import Convention
-from server.store.trajectory_file import read_trajectory
-from solver.attitude import dcm_from_quaternion
-from solver.errors import SolverError
-from solver.methods import METHODS
-from solver.planner import PlanOptions, plan
-from solver.planner.preview_flight import PreviewFlight
-from solver.planner.way import PreviewOptions
-from solver.rig import FRAMES, FrameLimits, Geometry, Rig, builtin_rigs
-from solver.scenarios import random_flight
-from solver.solve import solve
-from solver.verify import verify
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.errors import SolverError
+from fullpose.methods import METHODS
+from fullpose.plan import PlanOptions, plan
+from fullpose.preview.flight import PreviewFlight
+from fullpose.preview.replan import PreviewOptions
+from fullpose.rig import FRAMES, FrameLimits, Geometry, Rig, builtin_rigs
+from fullpose.scenarios import random_flight
+from fullpose.solve import solve
+from fullpose.verify import verify
+from fullpose_server.formats.trajectory import Convention
+from fullpose_server.formats.trajectory_file import read_trajectory
 
 Array = NDArray[np.float64]
 EXACT = np.radians(1e-9)

@@ -23,12 +23,19 @@ from websockets.sync.client import connect
 
 from bench.machine import machine
 from bench.rig_load import served
-from server.client import Client
-from server.runtime.config import LiveConfig, RigConfig
-from server.runtime.host import RigHost
-from server.runtime.live_packet import REPLY_SIZE, Kind, LiveReply, LiveStatus, decode_reply, encode_sample
-from solver.rig import builtin_rigs
-from tests.server.runtime.rigs import Operator
+from fullpose.rig import builtin_rigs
+from fullpose_server.client import Client
+from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
+from fullpose_server.runtime.live.packets import (
+    REPLY_SIZE,
+    Kind,
+    LiveReply,
+    LiveStatus,
+    decode_reply,
+    encode_sample,
+)
+from fullpose_server.runtime.supervisor.rig_client import RigHost
+from tests.fullpose_server.runtime.rigs import Operator
 
 RIG = "vertical-4"
 

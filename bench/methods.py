@@ -21,14 +21,14 @@ from numpy.typing import NDArray
 
 from bench.machine import machine
 from bench.peers import PEERS, race
-from solver.attitude import dcm_from_quaternion
-from solver.compare import EXACT_WITHIN
-from solver.errors import SolverError
-from solver.methods import METHODS
-from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
-from solver.scenarios import DEG, SCENARIOS, random_flight
-from solver.solve import solve
-from solver.verify import attitude_errors, differences, payload_attitudes, verify
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.compare import EXACT_WITHIN
+from fullpose.errors import SolverError
+from fullpose.methods import METHODS
+from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
+from fullpose.scenarios import DEG, SCENARIOS, random_flight
+from fullpose.solve import solve
+from fullpose.verify import attitude_errors, differences, payload_attitudes, verify
 
 Array = NDArray[np.float64]
 DEFAULT = "small_angles,large_no_limit,over_limit,both_beyond_90"

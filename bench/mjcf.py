@@ -1,6 +1,6 @@
 """The rigs as MuJoCo models: the peers' benchmark runs on them, and the tests use them as an oracle."""
 
-from solver.rig import FRAMES, Rig
+from fullpose.rig import FRAMES, Rig
 
 AXIS = ("1 0 0", "0 1 0", "0 0 1")
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.mjcf import mjcf
-from solver.rig import FRAMES, Rig
+from fullpose.rig import FRAMES, Rig
 
 Array = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from bench.flights import rigs
 from bench.machine import machine
-from solver.attitude import dcm_from_quaternion
-from solver.planner import PlanOptions, plan
-from solver.planner.chain import Programme
-from solver.planner.nodes import lattice
-from solver.planner.path import stage_samples
-from solver.rig import Rig
-from solver.scenarios import random_flight
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.plan import PlanOptions, plan
+from fullpose.rig import Rig
+from fullpose.scenarios import random_flight
+from fullpose.trajectory.nodes import lattice
+from fullpose.trajectory.shortest_path import Programme
+from fullpose.trajectory.windows import stage_samples
 
 Array = NDArray[np.float64]
 GRID = np.radians(3.0)

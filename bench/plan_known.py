@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.machine import machine
-from solver.planner import PlanOptions, plan
-from solver.rig import FrameLimits, Geometry, Rig
-from solver.verify import payload_attitudes, verify
+from fullpose.plan import PlanOptions, plan
+from fullpose.rig import FrameLimits, Geometry, Rig
+from fullpose.verify import payload_attitudes, verify
 
 Array = NDArray[np.float64]
 DEG = np.pi / 180.0

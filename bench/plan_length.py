@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.attitude import dcm_from_quaternion
-from solver.planner import plan
-from solver.rig import builtin_rigs
-from solver.scenarios import random_flight
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.plan import plan
+from fullpose.rig import builtin_rigs
+from fullpose.scenarios import random_flight
 
 
 def resident() -> float:

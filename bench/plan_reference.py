@@ -10,12 +10,12 @@ import time as clock
 import numpy as np
 
 from bench.machine import machine
-from solver.attitude import dcm_from_quaternion
-from solver.planner import PlanOptions, plan
-from solver.planner.refine import path_cost
-from solver.rig import builtin_rigs
-from solver.scenarios import random_flight
-from solver.verify import verify
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.plan import PlanOptions, plan
+from fullpose.rig import builtin_rigs
+from fullpose.scenarios import random_flight
+from fullpose.trajectory.sqp import path_cost
+from fullpose.verify import verify
 
 REFERENCE = PlanOptions(grid=np.radians(0.25), stage=0.025, knot=0.0125, iterations=30, window=1e3)
 

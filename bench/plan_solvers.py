@@ -17,12 +17,12 @@ import proxsuite
 from scipy import sparse
 
 from bench.machine import machine
-from solver.attitude import dcm_from_quaternion
-from solver.planner import plan
-from solver.planner import refine as refine_module
-from solver.planner.programme import Matrices, QuadraticProgramme, matrices, solve_programme
-from solver.rig import builtin_rigs
-from solver.scenarios import random_flight
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.plan import plan
+from fullpose.rig import builtin_rigs
+from fullpose.scenarios import random_flight
+from fullpose.trajectory import sqp as refine_module
+from fullpose.trajectory.qp import Matrices, QuadraticProgramme, matrices, solve_programme
 
 TOLERANCE = 1e-7
 FLIGHTS = ((3, 60.0), (7, 120.0), (0, 120.0), (6, 120.0))

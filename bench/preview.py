@@ -4,7 +4,7 @@
     python -m bench.preview --flights 10 --delay 0.05 --plan 1
     python -m bench.preview --timing
 
-Seeded flights of 20 s (`solver.scenarios.random_flight`); a flight counts where no sample is limited, the error of
+Seeded flights of 20 s (`fullpose.scenarios.random_flight`); a flight counts where no sample is limited, the error of
 every sample is below 1e-9 deg and the independent check finds no violation. Beside it `exact` and, with --plan 1,
 `plan`. Also: limited samples, flights of which a limit was exceeded (must be none), the longest time to regain the
 attitude, and the processor time of a re-plan. horizontal-limited has the frames of vertical-limited. Rates in deg/s,
@@ -19,13 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.machine import machine
-from solver.attitude import dcm_from_quaternion
-from solver.compare import EXACT_WITHIN
-from solver.planner import PreviewFlight, PreviewOptions, PreviewStepper
-from solver.rig import Rig, builtin_rigs
-from solver.scenarios import DEG, random_flight
-from solver.solve import solve
-from solver.verify import attitude_errors, payload_attitudes, verify
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.compare import EXACT_WITHIN
+from fullpose.plan import PreviewFlight, PreviewOptions, PreviewStepper
+from fullpose.rig import Rig, builtin_rigs
+from fullpose.scenarios import DEG, random_flight
+from fullpose.solve import solve
+from fullpose.verify import attitude_errors, payload_attitudes, verify
 
 Array = NDArray[np.float64]
 SECONDS = 20.0

@@ -1,6 +1,6 @@
 """The papers' figures, measured on our runs: python -m bench.published
 
-Prints what docs/guide/methods.md sets beside the published numbers. The flights are ours (`solver.scenarios`), the
+Prints what docs/guide/methods.md sets beside the published numbers. The flights are ours (`fullpose.scenarios`), the
 papers' not being at hand; where an amplitude or a rule matters, it is varied.
 """
 
@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.machine import machine
-from solver.attitude import dcm_from_quaternion
-from solver.kinematics import jacobian
-from solver.methods.alm import AlmOptions
-from solver.resample import resample
-from solver.rig import FrameLimits, Geometry, Rig, builtin_rigs
-from solver.scenarios import DEG, SCENARIOS, Angle, Ramp, Scenario, Sine
-from solver.solution import Solution
-from solver.solve import solve
-from solver.verify import attitude_errors, payload_attitudes, verify
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.kinematics import jacobian
+from fullpose.methods.alm import AlmOptions
+from fullpose.resample import resample
+from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
+from fullpose.scenarios import DEG, SCENARIOS, Angle, Ramp, Scenario, Sine
+from fullpose.solution import Solution
+from fullpose.solve import solve
+from fullpose.verify import attitude_errors, payload_attitudes, verify
 
 Array = NDArray[np.float64]
 RIGS = builtin_rigs()

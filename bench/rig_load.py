@@ -50,7 +50,7 @@ def get(port: int, path: str) -> bytes:
 @contextlib.contextmanager
 def served(data: Path) -> Iterator[int]:
     """`fullpose serve` on a free port of loopback."""
-    command = [sys.executable, "-c", "from server.cli import main; main()", "serve", "--port", "0"]
+    command = [sys.executable, "-c", "from fullpose_server.cli import main; main()", "serve", "--port", "0"]
     command += ["--data-dir", str(data)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None

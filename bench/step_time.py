@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 
 from bench.machine import machine
 from bench.peers import race
-from solver.attitude import dcm_from_quaternion, quaternion_from_ned
-from solver.methods import METHODS
-from solver.resample import resample
-from solver.rig import Rig, builtin_rigs
-from solver.solve import solve
-from solver.verify import attitude_errors, payload_attitudes, verify
+from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
+from fullpose.methods import METHODS
+from fullpose.resample import resample
+from fullpose.rig import Rig, builtin_rigs
+from fullpose.solve import solve
+from fullpose.verify import attitude_errors, payload_attitudes, verify
 
 Array = NDArray[np.float64]
 RATE_HZ = 1000.0
@@ -35,8 +35,8 @@ COLD = """
 import sys, time
 begin = time.perf_counter()
 import numpy as np
-from solver.solve import solve
-from solver.rig import builtin_rigs
+from fullpose.solve import solve
+from fullpose.rig import builtin_rigs
 solve([0.0, 0.001], np.broadcast_to(np.eye(3), (2, 3, 3)), builtin_rigs()["vertical-4"], sys.argv[1])
 print(time.perf_counter() - begin)
 """

@@ -10,21 +10,21 @@ from pathlib import Path
 
 import numpy as np
 
-from server.drives import registry
-from server.runtime import warm
-from server.runtime.config import RigConfig
-from solver.attitude import dcm_from_quaternion, quaternion_from_ned
-from solver.errors import MethodError
-from solver.method_options import method_names
-from solver.resample import resample
-from solver.rig import builtin_rigs
-from solver.solve import solve
-from solver.verify import verify
+from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
+from fullpose.errors import MethodError
+from fullpose.registry import method_names
+from fullpose.resample import resample
+from fullpose.rig import builtin_rigs
+from fullpose.solve import solve
+from fullpose.verify import verify
+from fullpose_server.drives import registry
+from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.loop import prewarm
 
 
 def main() -> None:
     """One second of the demo flight through everything; one line a method."""
-    with as_file(files("server") / "demo_flights" / "loop.csv") as path:
+    with as_file(files("fullpose_server") / "demo_flights" / "loop.csv") as path:
         rows = np.loadtxt(path, delimiter=",", skiprows=1, max_rows=201)
     flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:]), 1000.0)
     attitude = dcm_from_quaternion(flight.q)
@@ -43,7 +43,7 @@ def main() -> None:
     started = time.perf_counter()
     for name, rig in builtin_rigs().items():
         config = RigConfig(name, rig, directory=Path("unused"), runs=Path("unused"))  # nothing is written
-        warm.kernels(config)
+        prewarm.kernels(config)
         drive = registry.make(config.drive, rig, config.rate_hz, config.drive_options)
         drive.connect(0.0)
         drive.read(1.0 / config.rate_hz, np.zeros(4), np.zeros(4))

@@ -5,10 +5,10 @@ python examples/fourth_axis.py
 
 import numpy as np
 
-from solver.attitude import dcm_from_euler
-from solver.rig import builtin_rigs
-from solver.solve import solve
-from solver.verify import verify
+from fullpose.attitude import dcm_from_euler
+from fullpose.rig import builtin_rigs
+from fullpose.solve import solve
+from fullpose.verify import verify
 
 # 12 s at 1 kHz: a loop in a plane that leans by 1 degree, so that the nose passes beside the vertical, as real ones do.
 time = np.arange(12_001) / 1000.0

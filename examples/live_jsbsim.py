@@ -19,7 +19,7 @@ from typing import Any
 import jsbsim
 from websockets.asyncio.client import ClientConnection
 
-from server.client import Client, ClientError
+from fullpose_server.client import Client, ClientError
 
 RATE_HZ = 200
 

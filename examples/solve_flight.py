@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.attitude import dcm_from_quaternion, quaternion_from_ned
-from solver.resample import resample
-from solver.rig import FRAMES, builtin_rigs
-from solver.solution import limited_name
-from solver.solve import solve
-from solver.verify import verify
+from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
+from fullpose.resample import resample
+from fullpose.rig import FRAMES, builtin_rigs
+from fullpose.solution import limited_name
+from fullpose.solve import solve
+from fullpose.verify import verify
 
 # A flight: times [s] and attitudes. This file is north-east-down, so its axes are changed to ours.
 path = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent / "flights" / "loop.csv")

@@ -18,7 +18,7 @@ import jsbsim
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.attitude import quaternion_from_dcm
+from fullpose.attitude import quaternion_from_dcm
 
 Array = NDArray[np.float64]
 STEP_HZ = 400  # JSBSim's integration
@@ -305,7 +305,7 @@ def main() -> None:
             path.write_text(text)
             print(f"{path}: {time[-1]:.2f} s, {len(time)} samples, {flight.aircraft}")
             if flight.name == DEMO and arguments.out == REPOSITORY / "examples" / "flights":
-                (REPOSITORY / "server" / "demo_flights" / f"{DEMO}.csv").write_text(text)
+                (REPOSITORY / "server" / "fullpose_server" / "demo_flights" / f"{DEMO}.csv").write_text(text)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ export default defineConfig({
   plugins: [svelte()],
   base: "/",
   build: {
-    outDir: process.env["FULLPOSE_CONSOLE_OUT"] ?? "../server/console",
+    outDir: process.env["FULLPOSE_CONSOLE_OUT"] ?? "../server/fullpose_server/console",
     emptyOutDir: true,
     target: "es2022",
     assetsInlineLimit: 0, // a font as a data: URL would be refused by a strict content policy

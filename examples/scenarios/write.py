@@ -1,9 +1,9 @@
-"""Write the suite of `solver.scenarios` as the TOML files beside this script (python examples/scenarios/write.py)."""
+"""Write the suite of `fullpose.scenarios` as the TOML files beside this script (python examples/scenarios/write.py)."""
 
 from pathlib import Path
 
-from server.store.scenario_file import write_scenario
-from solver.scenarios import SCENARIOS
+from fullpose.scenarios import SCENARIOS
+from fullpose_server.formats.scenario_file import write_scenario
 
 HERE = Path(__file__).parent
 

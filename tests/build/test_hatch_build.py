@@ -10,7 +10,7 @@ from types import ModuleType
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.support.repository import ROOT
 
 
 def load() -> ModuleType:
@@ -32,7 +32,7 @@ def tree(tmp_path: Path) -> Path:
     (tmp_path / "web" / "src").mkdir(parents=True)
     (tmp_path / "web" / "package.json").write_text("{}")
     (tmp_path / "web" / "src" / "main.ts").write_text("mount()")
-    console = tmp_path / "server" / "console"
+    console = tmp_path / "server" / "fullpose_server" / "console"
     console.mkdir(parents=True)
     (console / "index.html").write_text("<!doctype html>")
     (console / hatch_build.STAMP).write_text(hatch_build.Console(tmp_path).wanted())
@@ -124,8 +124,8 @@ def test_wheel_holds_the_console_and_not_its_sources(tmp_path: Path) -> None:
     )
     (wheel,) = (tree / "dist").glob("*.whl")
     names = zipfile.ZipFile(wheel).namelist()
-    assert "server/console/index.html" in names
-    assert any(name.startswith("server/console/assets/") and name.endswith(".js") for name in names)
+    assert "fullpose_server/console/index.html" in names
+    assert any(name.startswith("fullpose_server/console/assets/") and name.endswith(".js") for name in names)
     assert not any(name.startswith("web/") or name.endswith((".nbi", ".nbc")) for name in names)
 
 

@@ -3,8 +3,8 @@
 import json
 from pathlib import Path
 
-from server.app import create_app
-from server.settings import Settings
+from fullpose_server.app import create_app
+from fullpose_server.settings import Settings
 
 COMMITTED = Path(__file__).parents[2] / "docs" / "openapi.json"
 

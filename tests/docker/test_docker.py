@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 import yaml
 
-from server.settings import Settings, is_loopback
-from solver.method_options import method_names
+from fullpose.registry import method_names
+from fullpose_server.settings import Settings, is_loopback
+from tests.support.repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 DOCKER = ROOT / "docker"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 FIELDS = {f"FULLPOSE_{name.upper()}" for name in Settings.model_fields}
@@ -87,11 +87,11 @@ def test_the_wheels_own_files_are_copied() -> None:
 @pytest.mark.parametrize(
     ("path", "out"),
     [
-        ("server/app.py", False),
-        ("server/demo_flights/loop.csv", False),
+        ("server/fullpose_server/app.py", False),
+        ("server/fullpose_server/demo_flights/loop.csv", False),
         ("web/src/main.ts", False),
         ("web/node_modules/vite/package.json", True),
-        ("server/console/index.html", True),
+        ("server/fullpose_server/console/index.html", True),
         ("server/__pycache__/app.cpython-311.pyc", True),
         (".git/config", True),
         (".venv/bin/python", True),

@@ -5,17 +5,24 @@ from pathlib import Path
 
 import pytest
 
-from server.rig_config import OWNER_SILENCE, SERVER_SILENCE, GuardConfig, MotionConfig, OperatingConfig, Tolerance
-from server.session.machine import SilencePolicy
-from server.settings import Settings
-from server.store.rig_file import read_rig
-from server.store.rig_operating import PROCESS, TOLERANCES
-from server.store.trajectory import QUATERNION, Convention
-from solver.method_options import method_names
-from solver.methods import METHODS
-from solver.rig import FRAMES, Geometry, builtin_rigs
+from fullpose.methods import METHODS
+from fullpose.registry import method_names
+from fullpose.rig import FRAMES, Geometry, builtin_rigs
+from fullpose_server.formats.rig_file import read_rig
+from fullpose_server.formats.rig_operating import PROCESS, TOLERANCES
+from fullpose_server.formats.trajectory import QUATERNION, Convention
+from fullpose_server.operating import (
+    OWNER_SILENCE,
+    SERVER_SILENCE,
+    GuardConfig,
+    MotionConfig,
+    OperatingConfig,
+    Tolerance,
+)
+from fullpose_server.session.machine import SilencePolicy
+from fullpose_server.settings import Settings
+from tests.support.repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "docs" / "guide"
 PAGES = sorted([*GUIDE.glob("*.md"), *(ROOT / "examples").rglob("*.md")])
 

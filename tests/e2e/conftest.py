@@ -15,7 +15,8 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, sync_playwright
 
-ROOT = Path(__file__).parents[2]
+from tests.support.repository import ROOT
+
 FLIGHTS = ROOT / "examples" / "flights"
 FLIGHT = FLIGHTS / "loop.csv"
 DESK: ViewportSize = {"width": 1440, "height": 900}
@@ -89,7 +90,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     command = [
         sys.executable,
         "-c",
-        "from server.cli import main; main()",
+        "from fullpose_server.cli import main; main()",
         "serve",
         "--port",
         "0",

@@ -1,24 +1,23 @@
 """The flights of examples/flights/: flown as their README says, and flown again to the same bytes."""
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from solver.attitude import dcm_from_quaternion, quaternion_from_ned
-from solver.resample import resample
-from solver.rig import builtin_rigs
-from solver.solve import solve
-from solver.verify import verify
+from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
+from fullpose.resample import resample
+from fullpose.rig import builtin_rigs
+from fullpose.solve import solve
+from fullpose.verify import verify
+from tests.support.repository import ROOT
 from tools.fly_flights import FLIGHTS, RATE_HZ, fly, table
 
 # JSBSim hands its matrices over as numpy.matrix, which NumPy frowns on.
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
 
-ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "examples" / "flights"
 
 
@@ -114,7 +113,7 @@ def test_demo_flight_is_flown_exactly_on_the_demo_rig() -> None:
 
 
 def test_demo_flight_is_the_example_loop() -> None:
-    assert (ROOT / "server/demo_flights/loop.csv").read_bytes() == (FOLDER / "loop.csv").read_bytes()
+    assert (ROOT / "server/fullpose_server/demo_flights/loop.csv").read_bytes() == (FOLDER / "loop.csv").read_bytes()
 
 
 def feasible(method: str, rig_name: str, name: str) -> bool:

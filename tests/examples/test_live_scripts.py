@@ -4,14 +4,11 @@ import re
 import socket
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
 from tests.examples.test_scripts import run
-from tests.server.api.live_server import LiveServer, Operator, live_server
-
-ROOT = Path(__file__).parents[2]
+from tests.fullpose_server.api.live_server import LiveServer, Operator, live_server
 
 
 @pytest.fixture(scope="module")

@@ -3,11 +3,11 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.support.repository import PYTHONPATH, ROOT
+
 SAID = {
     "solve_flight.py": ["loop on vertical-4", "loop on horizontal-4", "flown exactly, inside every limit"],
     "fourth_axis.py": ["vertical-3: fastest frame 2", "vertical-4: fastest frame"],
@@ -21,7 +21,7 @@ def run(script: str, *arguments: str) -> str:
     done = subprocess.run(
         [sys.executable, "-W", "error", f"examples/{script}", *arguments],
         cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        env=os.environ | {"PYTHONPATH": PYTHONPATH},
         capture_output=True,
         text=True,
         timeout=300,

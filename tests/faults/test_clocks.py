@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from server.runtime.replay import is_whole, read_samples, recover_messages
-from tests.server.runtime.rigs import codes_of, config_of, hosted, plan_of, written
-from tests.server.runtime.test_host import within_limits
+from fullpose_server.runtime.recording.mcap_reader import is_whole, read_samples, recover_messages
+from tests.fullpose_server.runtime.rigs import codes_of, config_of, hosted, plan_of, written
+from tests.fullpose_server.runtime.supervisor.test_rig_client import within_limits
 
 # Setting the real clock would reach every process of the machine. In the processes of the rig, which begin with this
 # module, the clock is the machine's and what the file says [s].

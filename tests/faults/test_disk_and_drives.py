@@ -13,16 +13,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from server.drives.packet import Order
-from server.plan_folder import PlanFolder, PlanInfo, plan_hash
-from server.runtime.config import GuardConfig, RigConfig, Tolerance
-from server.runtime.host import RigHost
-from server.runtime.replay import is_whole, read_events, read_samples, repair
-from server.session.states import STATES
-from tests.server.drives.relay import Relay, relay
-from tests.server.drives.test_udp import emulator
-from tests.server.runtime.rigs import config_of, hosted, plan_of, written
-from tests.server.runtime.test_host import within_limits
+from fullpose_server.drives.packet import Order
+from fullpose_server.formats.plan_folder import PlanFolder, PlanInfo, plan_hash
+from fullpose_server.runtime.contract.config import GuardConfig, RigConfig, Tolerance
+from fullpose_server.runtime.recording.mcap_reader import is_whole, read_events, read_samples, repair
+from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.session.states import STATES
+from tests.fullpose_server.drives.relay import Relay, relay
+from tests.fullpose_server.drives.test_udp import emulator
+from tests.fullpose_server.runtime.rigs import config_of, hosted, plan_of, written
+from tests.fullpose_server.runtime.supervisor.test_rig_client import within_limits
 
 
 @contextlib.contextmanager
@@ -164,7 +164,15 @@ def test_a_table_that_vanishes_is_a_lost_link_and_can_be_connected_again(tmp_pat
                 assert gone.error is not None
                 assert gone.error.code == "drive_unreachable"
                 again = subprocess.Popen(  # noqa: ASYNC220
-                    [sys.executable, "-m", "server.drives.table_emulator", "--port", str(port), "--seconds", "60"],
+                    [
+                        sys.executable,
+                        "-m",
+                        "fullpose_server.drives.testing.table_emulator",
+                        "--port",
+                        str(port),
+                        "--seconds",
+                        "60",
+                    ],
                     stdout=subprocess.PIPE,
                 )
                 assert again.stdout is not None

@@ -17,13 +17,13 @@ import numpy as np
 import pytest
 from mcap.stream_reader import StreamReader
 
-from server.runtime.config import encode
-from server.runtime.host import RigHost
-from server.runtime.place import Place
-from server.runtime.replay import read_events
-from server.session.machine import SilencePolicy
-from tests.server.runtime.rigs import Operator, codes_of, config_of, hosted, plan_of, written
-from tests.server.runtime.test_host import within_limits
+from fullpose_server.runtime.contract.config import encode
+from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.recording.mcap_reader import read_events
+from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.session.machine import SilencePolicy
+from tests.fullpose_server.runtime.rigs import Operator, codes_of, config_of, hosted, plan_of, written
+from tests.fullpose_server.runtime.supervisor.test_rig_client import within_limits
 
 CAMPAIGN = "FULLPOSE_FAULTS" in os.environ
 MOMENTS = int(os.environ.get("FULLPOSE_FAULTS", "3"))
@@ -33,9 +33,9 @@ QUICK = SilencePolicy(0.8, 8.0, 60.0)
 SERVER = """
 import asyncio, sys
 from pathlib import Path
-from server.runtime import config
-from server.runtime.host import RigHost
-from tests.server.runtime.rigs import Operator
+from fullpose_server.runtime import config
+from fullpose_server.runtime.supervisor.rig_client import RigHost
+from tests.fullpose_server.runtime.rigs import Operator
 
 async def main(settings, plan):
     host = RigHost(config.decode(Path(settings).read_bytes()))
@@ -53,7 +53,7 @@ asyncio.run(main(*sys.argv[1:]))
 
 def messages(path: Path) -> list[int]:
     """Sequences of the telemetry that can be read from a file, whole or cut off."""
-    from server.runtime.replay import recover_messages
+    from fullpose_server.runtime.recording.mcap_reader import recover_messages
 
     return [m.sequence for topic, m in recover_messages(path) if topic == "/telemetry"]
 
@@ -127,7 +127,7 @@ import os, sys, time
 _time_ns = time.time_ns
 def _broken():
     fault = os.environ["BROKEN_TICK"]
-    if "server.runtime.process" in " ".join(sys.orig_argv) and os.path.exists(fault):
+    if "fullpose_server.runtime.loop.process" in " ".join(sys.orig_argv) and os.path.exists(fault):
         time.time_ns = _time_ns
         raise ZeroDivisionError("a fault of ours")
     return _time_ns()

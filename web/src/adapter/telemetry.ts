@@ -112,7 +112,7 @@ export function decodeJson(message: TelemetryMessage, layout: Layout): Batch {
 /** Four values, one a frame: base, outer, middle, inner. */
 export type Four = readonly [number, number, number, number];
 
-/** Bits of a sample's flags that the console shows (server/runtime/telemetry.py). */
+/** Bits of a sample's flags that the console shows (server/fullpose_server/runtime/contract/telemetry.py). */
 export const FLAG = { stale: 32 };
 
 /** One record, in the units of the surface: degrees and seconds. */

@@ -1,0 +1,87 @@
+"""What the routes work with: one object, built by the app's lifespan, reached through `Annotated` dependencies."""
+
+import re
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Protocol
+
+from fastapi import Depends, Header
+from numpy.typing import ArrayLike
+from starlette.requests import HTTPConnection
+
+from fullpose_server.api.errors import ApiError
+from fullpose_server.api.schemas.base import CLIENT_NAME
+from fullpose_server.api.streams.frame_source import FrameSource
+from fullpose_server.formats.rig_file import RigStore
+from fullpose_server.planning.comparisons import Comparisons
+from fullpose_server.planning.plan_queue import PlanQueue
+from fullpose_server.runtime.recording.run_index import RunFiles
+from fullpose_server.runtime.supervisor.registry import RigHosts
+from fullpose_server.settings import Settings
+from fullpose_server.store.audit import AuditLog
+from fullpose_server.store.database import Database
+from fullpose_server.store.plans import PlanStore
+from fullpose_server.store.trajectories import TrajectoryStore
+
+
+class Scenes(Protocol):
+    """What the routes need of the scenes, which are another layer's (`scene.on_demand`); blocking."""
+
+    def show_pose(self, rig: str, angles: ArrayLike | None, target: ArrayLike | None = None) -> None:
+        """Show a planned pose (4,) [rad] with its attitude (4,) beside the rig; None takes it away."""
+
+    def add(self, name: str, rig: str, latest: Callable[[], Any]) -> None:
+        """Give the samples of `latest` a scene called `name`."""
+
+    def remove(self, name: str) -> None:
+        """Take an added scene away."""
+
+
+@dataclass
+class Services:
+    """Stores, queue and rigs of one server."""
+
+    settings: Settings
+    database: Database
+    rigs: RigStore
+    trajectories: TrajectoryStore
+    plans: PlanStore
+    queue: PlanQueue
+    comparisons: Comparisons
+    audit: AuditLog
+    hosts: RigHosts
+    runs: RunFiles
+    scenes: Scenes
+    frames: dict[str, FrameSource] = field(default_factory=dict)
+    live_sources: set[str] = field(default_factory=set)  # rigs that have one connected
+    replays: set[str] = field(default_factory=set)  # scenes of the records that are played
+    started: float = field(default_factory=time.time)
+
+
+# Async, though they wait for nothing: FastAPI hands what is not to a thread, and an E-stop would wait for that.
+async def _services(connection: HTTPConnection) -> Services:
+    services = connection.app.state.services
+    assert isinstance(services, Services)
+    return services
+
+
+_WHO = re.compile(CLIENT_NAME)
+
+
+async def _who(
+    connection: HTTPConnection,
+    x_fullpose_client: Annotated[
+        str | None,
+        Header(description="Who commands, while no users are configured: a name for the lease and the audit"),
+    ] = None,
+) -> str:
+    if x_fullpose_client is not None:
+        if not _WHO.fullmatch(x_fullpose_client):
+            raise ApiError(422, "validation", "X-Fullpose-Client: expected up to 64 letters, digits or . @ : + - _")
+        return x_fullpose_client
+    return "anonymous" if connection.client is None else f"anonymous@{connection.client.host}"
+
+
+ServicesDep = Annotated[Services, Depends(_services)]
+WhoDep = Annotated[str, Depends(_who)]

@@ -1,0 +1,119 @@
+"""Every error as application/problem+json (RFC 9457), with a stable code in its type."""
+
+import logging
+from collections.abc import Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import ValidationError
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from fullpose.errors import InputError, MethodError
+from fullpose_server.api.schemas.base import FieldProblem, Problem
+from fullpose_server.errors import FileError, NotFoundError
+
+MEDIA_TYPE = "application/problem+json"
+log = logging.getLogger(__name__)
+
+
+class ApiError(Exception):
+    """Root of the errors that the API raises on purpose; it carries its problem document."""
+
+    def __init__(
+        self,
+        status: int,
+        code: str,
+        detail: str,
+        *,
+        errors: Sequence[FieldProblem] = (),
+        state: str | None = None,
+        command: str | None = None,
+        allowed: Sequence[str] | None = None,
+    ) -> None:
+        super().__init__(detail)
+        self.problem = Problem(
+            type=f"urn:fullpose:problem:{code}",
+            title=HTTPStatus(status).phrase,
+            status=status,
+            detail=detail,
+            errors=list(errors),
+            state=state,
+            command=command,
+            allowed=None if allowed is None else list(allowed),
+        )
+
+
+def not_found(kind: str, name: str) -> ApiError:
+    """404 for a thing that is named and not there."""
+    return ApiError(404, "not-found", f"no {kind} named {name!r}")
+
+
+def problem_of(error: Exception) -> Problem:
+    """The document of an error; errors nobody planned for become 500 and are logged, without their text."""
+    match error:
+        case ApiError():
+            return error.problem
+        case HTTPException():
+            return ApiError(error.status_code, "http", str(error.detail)).problem
+        case RequestValidationError() | ValidationError():
+            return validation_problem(error.errors())
+        case NotFoundError():
+            return ApiError(404, "not-found", str(error)).problem
+        case FileError():
+            return ApiError(422, "file", str(error), errors=[_file_problem(error)]).problem
+        case InputError() | MethodError():
+            return ApiError(422, "solver-input", str(error)).problem
+        case _:
+            log.error("unexpected error", exc_info=error)
+            return ApiError(500, "internal", "an error of the server; its log tells more").problem
+
+
+def validation_problem(errors: Sequence[Any]) -> Problem:
+    """422 from pydantic's list of errors."""
+    fields = [
+        FieldProblem(
+            where=".".join(str(part) for part in item["loc"]),
+            message=item["msg"],
+            value=None if item["type"] == "missing" else _short(item.get("input")),
+        )
+        for item in errors[:20]
+    ]
+    more = f" (and {len(errors) - 20} more)" if len(errors) > 20 else ""
+    detail = "; ".join(f"{field.where}: {field.message}" for field in fields[:3]) + more
+    return ApiError(422, "validation", detail, errors=fields).problem
+
+
+def problem_response(problem: Problem, request: Request | None = None) -> Response:
+    """The HTTP answer of a problem."""
+    if request is not None:
+        problem = problem.model_copy(update={"instance": request.url.path})
+    return Response(problem.model_dump_json(exclude_none=True), problem.status, media_type=MEDIA_TYPE)
+
+
+def install(app: FastAPI) -> None:
+    """Answer every error of the app with a problem document."""
+
+    async def answer(request: Request, error: Exception) -> Response:
+        return problem_response(problem_of(error), request)
+
+    for kind in (ApiError, HTTPException, RequestValidationError, FileError, NotFoundError, InputError, MethodError):
+        app.add_exception_handler(kind, answer)
+    app.add_exception_handler(Exception, answer)
+
+
+def _file_problem(error: FileError) -> FieldProblem:
+    return FieldProblem(
+        where=error.column or "file",
+        message=str(error),
+        value=error.value,
+        line=error.line,
+        expected=error.expected,
+    )
+
+
+def _short(value: object) -> str | None:
+    text = repr(value)
+    return text if len(text) <= 120 else text[:117] + "..."

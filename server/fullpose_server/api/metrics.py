@@ -1,0 +1,66 @@
+"""Prometheus metrics, read off at every scrape; no counters are kept beside what the rooms count themselves."""
+
+from collections.abc import Iterator
+
+from prometheus_client import CollectorRegistry, generate_latest
+from prometheus_client.core import GaugeMetricFamily, Metric
+from prometheus_client.exposition import CONTENT_TYPE_LATEST
+from prometheus_client.metrics_core import CounterMetricFamily
+from prometheus_client.registry import Collector
+
+from fullpose_server.api.deps import Services
+from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.session.states import STATES
+
+
+def exposition(services: Services) -> tuple[bytes, str]:
+    """The text and its media type."""
+    registry = CollectorRegistry()
+    registry.register(_Rooms(services))
+    return generate_latest(registry), CONTENT_TYPE_LATEST
+
+
+class _Rooms(Collector):
+    def __init__(self, services: Services) -> None:
+        self._services = services
+
+    def collect(self) -> Iterator[Metric]:
+        services = self._services
+        up = GaugeMetricFamily("fullpose_start_time_seconds", "When the server started")
+        up.add_metric([], services.started)
+        yield up
+        busy = GaugeMetricFamily("fullpose_planner_busy", "Whether a plan is being made")
+        busy.add_metric([], float(services.queue.status == "busy"))
+        yield busy
+        yield from _rigs(services.hosts.all())
+
+
+def _rigs(hosts: list[RigHost]) -> Iterator[Metric]:
+    label = ["rig"]
+    state = GaugeMetricFamily("fullpose_session_state", "1 for the state the session is in", labels=["rig", "state"])
+    alive = GaugeMetricFamily("fullpose_rig_alive", "Whether the rig process answers", labels=label)
+    ticks = CounterMetricFamily("fullpose_rig_ticks", "Ticks of the loop", labels=label)
+    misses = CounterMetricFamily("fullpose_rig_deadline_misses", "Deadlines missed", labels=label)
+    lost = CounterMetricFamily("fullpose_recorder_lost_samples", "Samples that never reached the record", labels=label)
+    late = GaugeMetricFamily(
+        "fullpose_rig_lateness_seconds", "Lateness of the loop over its life", labels=["rig", "quantile"]
+    )
+    alarms = GaugeMetricFamily("fullpose_alarms", "Standing alarms", labels=["rig", "severity"])
+    error = GaugeMetricFamily("fullpose_tracking_error_degrees", "Newest geodesic tracking error", labels=label)
+    for host in hosts:
+        now = host.snapshot()
+        for name in STATES:
+            state.add_metric([host.name, name.value], float(name.value == now.state))
+        alive.add_metric([host.name], float(now.health.rig_alive))
+        ticks.add_metric([host.name], now.health.ticks)
+        misses.add_metric([host.name], now.health.deadline_misses)
+        lost.add_metric([host.name], now.health.recorder.lost)
+        for quantile, value in now.health.lateness_us.items():
+            late.add_metric([host.name, quantile], value * 1e-6)
+        for severity in ("warning", "fault", "emergency"):
+            count = sum(alarm.severity == severity for alarm in now.alarms)
+            alarms.add_metric([host.name, severity], count)
+        newest = host.latest()
+        if newest is not None:
+            error.add_metric([host.name], float(newest["tracking_error_deg"][0]))
+    yield from (state, alive, ticks, misses, lost, late, alarms, error)

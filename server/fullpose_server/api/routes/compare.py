@@ -1,0 +1,109 @@
+"""Comparisons: jobs that put methods side by side on one flight and rig."""
+
+import asyncio
+import time
+from datetime import UTC, datetime
+
+from fastapi import APIRouter, Response
+from starlette.responses import FileResponse
+
+from fullpose.compare import variants
+from fullpose.registry import parse_variant, variant
+from fullpose.variant import Variant
+from fullpose_server.api.deps import Services, ServicesDep
+from fullpose_server.api.errors import ApiError
+from fullpose_server.api.schemas.compare import CompareIn, ComparisonOut, MethodIn
+from fullpose_server.api.schemas.plans import ProgressOut
+from fullpose_server.formats.start_pose import start_pose
+from fullpose_server.planning.compare_length import check_length
+from fullpose_server.planning.comparisons import PAGE, UNFINISHED, CompareRequest, Comparison
+
+router = APIRouter(prefix="/compare", tags=["compare"])
+
+
+@router.post("", status_code=202)
+async def add_comparison(body: CompareIn, response: Response, services: ServicesDep) -> ComparisonOut:
+    """Ask for a comparison at the rig's own rate; poll it until its status is done, failed or cancelled."""
+    asked = variants([_variant(method) for method in body.methods])
+    entry = await asyncio.to_thread(services.rigs.get, body.rig)
+    trajectory = await asyncio.to_thread(services.trajectories.get, body.trajectory)
+    rate_hz = services.settings.rig_rate_hz
+    check_length(trajectory.duration_s, rate_hz, len(asked))
+    start = None if body.start_deg is None else start_pose(body.start_deg, entry.rig, "start_deg")
+    request = CompareRequest(
+        trajectory_sha256=body.trajectory,
+        trajectory=str(services.trajectories.folder(body.trajectory)),
+        name=trajectory.name,
+        rig=entry.rig,
+        methods=asked,
+        rate_hz=rate_hz,
+        start=start,
+        created=time.time(),
+    )
+    job = services.comparisons.submit(request)
+    response.headers["Location"] = f"/api/v1/compare/{job.id}"
+    return _out(services, job, with_report=True)
+
+
+@router.get("")
+async def list_comparisons(services: ServicesDep) -> list[ComparisonOut]:
+    """All comparisons, newest first, without their reports."""
+    return [_out(services, job, with_report=False) for job in services.comparisons.all()]
+
+
+@router.get("/{comparison}")
+async def get_comparison(comparison: str, services: ServicesDep) -> ComparisonOut:
+    """One comparison, how far it is, and its report once it is done."""
+    return _out(services, services.comparisons.get(comparison), with_report=True)
+
+
+@router.get(
+    "/{comparison}/page",
+    response_class=FileResponse,
+    responses={200: {"content": {"text/html": {}}}, 409: {"description": "The comparison is not done"}},
+)
+async def comparison_page(comparison: str, services: ServicesDep) -> FileResponse:
+    """Table and plots as one self-contained HTML page."""
+    job = services.comparisons.get(comparison)
+    if job.status != "done":
+        raise ApiError(409, "not-done", f"comparison {comparison} is {job.status}: it has no page")
+    return FileResponse(services.comparisons.folder(comparison) / PAGE, media_type="text/html; charset=utf-8")
+
+
+@router.delete("/{comparison}", status_code=204)
+async def remove_comparison(comparison: str, services: ServicesDep) -> None:
+    """Cancel a comparison that is being made (it stays, cancelled); remove one that is not."""
+    await services.comparisons.remove(comparison)
+
+
+def _variant(method: str | MethodIn) -> Variant:
+    if isinstance(method, str):
+        return parse_variant(method)
+    return variant(method.method, method.options, method.label)
+
+
+def _out(services: Services, job: Comparison, *, with_report: bool) -> ComparisonOut:
+    done = job.status == "done"
+    return ComparisonOut.model_validate(
+        {
+            "id": job.id,
+            "status": job.status,
+            "progress": _progress(job),
+            "trajectory": job.request.trajectory_sha256,
+            "trajectory_name": job.request.name,
+            "rig": job.request.rig.name,
+            "methods": [one.label for one in job.request.methods],
+            "rate_hz": job.request.rate_hz,
+            "created_at": datetime.fromtimestamp(job.request.created, UTC),
+            "error": job.error,
+            "page": f"/api/v1/compare/{job.id}/page" if done else None,
+            "report": services.comparisons.report(job.id) if done and with_report else None,
+        }
+    )
+
+
+def _progress(job: Comparison) -> ProgressOut:
+    if job.status not in UNFINISHED:
+        return ProgressOut(phase=job.status, done=1, total=1, fraction=1.0)
+    phase, done, total = job.progress
+    return ProgressOut(phase=phase or job.status, done=done, total=total, fraction=min(1.0, done / total))

@@ -1,0 +1,62 @@
+"""Health for people and load balancers, metrics for Prometheus."""
+
+import asyncio
+import time
+
+from fastapi import APIRouter, Response
+
+from fullpose_server.api.deps import Services, ServicesDep
+from fullpose_server.api.metrics import exposition
+from fullpose_server.api.schemas.records import HealthOut, ServerLimits
+from fullpose_server.api.schemas.session_view import health_out
+from fullpose_server.version import VERSION
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/health")
+async def health(services: ServicesDep) -> HealthOut:
+    """How the server, its planner and its rigs do. Always 200: `status` and `warnings` say what is wrong."""
+    settings = services.settings
+    rigs = {host.name: health_out(host.snapshot().health) for host in services.hosts.all()}
+    wrong = _wrong(services) + [f"not a rig: {error}" for error in await asyncio.to_thread(services.rigs.broken)]
+    return HealthOut(
+        status="degraded" if wrong else "ok",
+        version=VERSION,
+        server_time=time.time(),
+        uptime_s=time.time() - services.started,
+        authenticated=False,
+        planner=services.queue.status,
+        limits=ServerLimits(max_upload_bytes=settings.max_upload_bytes, max_solve_samples=settings.max_solve_samples),
+        rigs=rigs,
+        warnings=wrong + _notes(services),
+    )
+
+
+@router.get("/metrics", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
+async def metrics(services: ServicesDep) -> Response:
+    """Prometheus text."""
+    body, media_type = exposition(services)
+    return Response(body, media_type=media_type)
+
+
+def _wrong(services: Services) -> list[str]:
+    found = []
+    if services.queue.status == "stopped":
+        found.append("the planner has stopped")
+    for host in services.hosts.all():
+        state = host.snapshot().health
+        if not state.rig_alive:
+            found.append(f"rig {host.name}: its process does not answer")
+        if state.recorder.error:
+            found.append(f"rig {host.name}: recorder: {state.recorder.error}")
+    return found
+
+
+def _notes(services: Services) -> list[str]:
+    notes = []
+    if services.settings.loopback:
+        notes.append("no users are configured: this server listens on this machine only")
+    else:
+        notes.append("no users are configured, and the network may command: allow_unauthenticated_network is set")
+    return notes

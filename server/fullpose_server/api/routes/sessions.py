@@ -1,0 +1,158 @@
+"""Sessions: the snapshot, commands, the lease, stop and E-stop on lanes of their own, alarms."""
+
+import asyncio
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Body
+
+from fullpose_server.api.commanding import answer, audit, lane, refusal
+from fullpose_server.api.deps import Services, ServicesDep, WhoDep
+from fullpose_server.api.errors import ApiError
+from fullpose_server.api.schemas.session import (
+    AlarmOut,
+    CommandIn,
+    CommandOut,
+    LeaseIn,
+    LeaseOut,
+    LeaseToken,
+    Load,
+    LoadArgs,
+    SessionOut,
+)
+from fullpose_server.api.schemas.session_view import lease_out, session_out
+from fullpose_server.runtime.contract.messages import ErrorBody, Reply
+from fullpose_server.runtime.supervisor.control_link import RequestTooLargeError
+from fullpose_server.runtime.supervisor.process_manager import HostError
+from fullpose_server.runtime.supervisor.rig_client import RefusedError, RigHost
+from fullpose_server.session.lease import LeaseToken as Token
+from fullpose_server.session.states import Command, State
+
+router = APIRouter(prefix="/rigs/{rig}", tags=["session"])
+
+REFUSED: dict[int | str, dict[str, Any]] = {
+    409: {"description": "The session refuses; nothing has changed. Names state, command and what is allowed"},
+    503: {"description": "The rig process does not answer"},
+}
+
+
+@router.get("/session")
+async def get_session(rig: str, services: ServicesDep) -> SessionOut:
+    """The session as of now."""
+    await _known(services, rig)
+    return session_out(services.hosts, rig, services.settings.rig_rate_hz)
+
+
+@router.get("/alarms")
+async def get_alarms(rig: str, services: ServicesDep) -> list[AlarmOut]:
+    """The rig's alarms, standing and past, the newest last."""
+    await _known(services, rig)
+    return session_out(services.hosts, rig, services.settings.rig_rate_hz).history
+
+
+@router.post("/commands", responses=REFUSED)
+async def command(rig: str, body: Annotated[CommandIn, Body()], services: ServicesDep, who: WhoDep) -> CommandOut:
+    """Command the session. Needs the lease, but for stop and estop."""
+    if body.command in ("stop", "estop"):
+        return await _lane(services, rig, body.command, who)
+    host = services.hosts.get(rig)
+    if host is None:
+        raise await _refused_without_process(services, rig, body, who)
+    args: dict[str, Any] = body.args.model_dump(exclude_none=True)
+    if isinstance(body, Load):
+        args = await _load_args(services, rig, body.args)
+    token = None if body.lease is None else Token(body.lease.epoch, body.lease.sequence)
+    try:
+        reply = await host.command(body.command, args, who, token)
+    except RequestTooLargeError as error:
+        raise ApiError(413, "too-large", str(error), command=body.command) from None
+    await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    return answer(body.command, reply)
+
+
+@router.post("/stop", responses=REFUSED)
+async def stop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
+    """Brake every frame inside its limits. Needs no lease and waits for no other command."""
+    return await _lane(services, rig, "stop", who)
+
+
+@router.post("/estop", responses=REFUSED)
+async def estop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
+    """Brake as fast as the limits allow, then disable the drive. Needs no lease and waits for no other command."""
+    return await _lane(services, rig, "estop", who)
+
+
+@router.post("/lease", responses=REFUSED)
+async def lease(rig: str, services: ServicesDep, who: WhoDep, body: LeaseIn | None = None) -> LeaseOut:
+    """Take, request, grant or renew the lease."""
+    body = body or LeaseIn()
+    return await _lease(services, await _host(services, rig), body.action, who, body.to)
+
+
+@router.delete("/lease", responses=REFUSED)
+async def release_lease(rig: str, services: ServicesDep, who: WhoDep) -> LeaseOut:
+    """Give the lease up."""
+    return await _lease(services, await _host(services, rig), "release", who, None)
+
+
+async def _lane(services: Services, rig: str, word: Literal["stop", "estop"], who: str) -> CommandOut:
+    if services.hosts.get(rig) is None:  # otherwise nothing is waited for before the flag is set
+        await _known(services, rig)
+    return await lane(services, rig, word, who)
+
+
+async def _lease(services: Services, host: RigHost, action: str, who: str, to: str | None) -> LeaseOut:
+    before = host.snapshot().state
+    try:
+        held = await host.lease(action, who, to)
+    except RefusedError as refused:
+        await audit(services, host.name, who, f"lease {action}", {}, None, refused.reply)
+        raise refusal(refused.reply) from None
+    if action != "renew":  # every few seconds; it says nothing that the next command does not
+        reply = Reply(ok=True, state_before=before, state_after=host.snapshot().state, revision=host.revision)
+        token = LeaseToken(epoch=held.epoch, sequence=held.sequence)
+        await audit(services, host.name, who, f"lease {action}", {} if to is None else {"to": to}, token, reply)
+    return lease_out(held)
+
+
+async def _refused_without_process(services: Services, rig: str, body: CommandIn, who: str) -> ApiError:
+    """Nobody holds the lease of a rig without a process: no command is started one for, taking the lease does that."""
+    await _known(services, rig)
+    state = State.DISCONNECTED
+    can = [str(Command.CONNECT)]
+    code, why = "lease_needed", "this command needs the lease: take it first"
+    if body.command not in can:
+        code, why = "illegal_command", f"{body.command} is not possible while {state}; allowed now: {', '.join(can)}"
+    reply = Reply(False, state, state, 0, ErrorBody(code, why, state, body.command, can))
+    await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    return refusal(reply)
+
+
+async def _known(services: Services, rig: str) -> None:
+    """Raises `NotFoundError`; a rig that runs is known, whatever has become of its file."""
+    if services.hosts.get(rig) is None:
+        await asyncio.to_thread(services.rigs.get, rig)
+
+
+async def _host(services: Services, rig: str) -> RigHost:
+    try:
+        return await services.hosts.ensure(rig)
+    except HostError as error:
+        raise ApiError(503, "rig-process", str(error)) from None
+
+
+async def _load_args(services: Services, rig: str, args: LoadArgs) -> dict[str, Any]:
+    if args.live is not None:
+        return {"live": args.live.model_dump()}
+    plan = args.plan or ""
+    row = await asyncio.to_thread(services.plans.get, plan)
+    result = row.result or {}
+    why = None
+    if row.rig != rig:
+        why = f"plan {plan} is for rig {row.rig}, not {rig}"
+    elif row.status != "done":
+        why = f"plan {plan} is {row.status}"
+    elif result.get("refusal"):
+        why = f"plan {plan} cannot be flown: {result['refusal']}"
+    if why is not None:
+        raise ApiError(409, "not-flyable", why, state=services.hosts.state(rig), command="load")
+    return {"plan_folder": str(services.plans.folder(plan).resolve())}

@@ -1,0 +1,251 @@
+"""Plans, their reports and jobs on the wire."""
+
+from datetime import datetime
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from fullpose_server.api.schemas.base import (
+    FieldProblem,
+    Four,
+    FrameName,
+    LimitName,
+    Name,
+    Notice,
+    Sha256,
+    Wire,
+)
+
+JobStatus = Literal["queued", "running", "done", "failed", "cancelled", "interrupted"]
+OptionValue = bool | int | float | str
+
+
+class PlanIn(Wire):
+    """What to plan. Without `start_deg` the start pose is free."""
+
+    trajectory: Sha256
+    rig: Name
+    method: str = "plan"
+    options: dict[str, OptionValue] = Field(default={})
+    start_deg: Four | None = None
+
+
+class ProgressOut(Wire):
+    """How far a job is."""
+
+    phase: str
+    done: int
+    total: int
+    fraction: float = Field(ge=0.0, le=1.0)
+
+
+class IterationsOut(Wire):
+    median: float
+    max: int
+
+
+class StepTimeOut(Wire):
+    median: float
+    p99: float
+
+
+class PeakOut(Wire):
+    position_deg: float
+    rate_deg_s: float
+    acceleration_deg_s2: float
+
+
+class PeaksOut(Wire):
+    base: PeakOut | None = None
+    outer: PeakOut
+    middle: PeakOut
+    inner: PeakOut
+
+
+class ViolationOut(Wire):
+    """A run of samples beyond a limit, at its worst one."""
+
+    time_s: float
+    frame: FrameName
+    limit: LimitName
+    value: float = Field(description="deg, deg/s or deg/s^2, by the limit")
+    samples: int = Field(description="Length of the run")
+
+
+class BlockingOut(Wire):
+    time_s: float
+    frame: FrameName
+    limit: LimitName
+
+
+class VerdictOut(Wire):
+    """What the verdict of method plan rests on."""
+
+    decided_by: str = Field(description="checked; or the limit that closes the way, start_rate, or three-axis")
+    statement: str
+    grid_deg: float | None = Field(description="Of the search; null where there was none")
+    max_matrix_error_between_samples: float | None
+
+
+class LeadsOut(Wire):
+    """The ways from rest to the first sample and from the last one to rest."""
+
+    lead_in_s: float
+    lead_out_s: float
+    refusal: str | None = Field(description="Why there is none")
+
+
+class ReportOut(Wire):
+    """The report of `fullpose solve --report`, key by key; keys may be added, not renamed."""
+
+    method: str
+    rig: str
+    samples: int
+    feasible: bool = Field(description="Inside every limit, no sample given up for one; see exact_samples")
+    exact_samples: int | None = Field(default=None, description="Within 1e-9 deg of the attitude")
+    exact_percent: float | None = Field(default=None, description="In hundredths, rounded down")
+    max_error_deg: float
+    max_matrix_error: float
+    iterations: IterationsOut
+    step_us: StepTimeOut | None
+    solve_s: float | None
+    peak: PeaksOut
+    limit_violations: list[ViolationOut]
+    limit_violation_samples: int = Field(description="All of them; the list is cut at a thousand runs")
+    limited_samples: int
+    limited_by: list[dict[str, str | int]] = Field(description="frame, limit, samples")
+    blocking: BlockingOut | None
+    warnings: list[Notice] = Field(default=[])
+    verdict: VerdictOut | None = Field(default=None, description="Of method plan")
+    leads: LeadsOut | None = Field(default=None, description="Of method plan")
+
+
+class MarginOut(Wire):
+    """The smallest distance to a limit, and when; negative beyond it."""
+
+    value: float
+    time_s: float
+
+
+class FrameMargins(Wire):
+    """Null: no limit. deg, deg/s, deg/s^2."""
+
+    position_deg: MarginOut | None
+    rate_deg_s: MarginOut | None
+    acceleration_deg_s2: MarginOut | None
+
+
+class MarginsOut(Wire):
+    """Of every frame; `singularity` is the smallest sin^2(outer) + cos^2(middle), zero at the rig's singularity."""
+
+    base: FrameMargins | None = None
+    outer: FrameMargins
+    middle: FrameMargins
+    inner: FrameMargins
+    singularity: MarginOut | None
+
+
+class JobErrorOut(Wire):
+    """Why a job failed."""
+
+    code: str
+    message: str
+    errors: list[FieldProblem] = Field(default=[])
+
+
+RemedyKind = Literal["slow_down", "heading_offset", "mounting_offset", "relax"]
+
+
+class RemedyIn(Wire):
+    """What may be changed to make a flight fit; `relax` may be asked of one frame or one kind of limit alone."""
+
+    kind: RemedyKind
+    frame: FrameName | None = None
+    limit: LimitName | None = None
+
+    @model_validator(mode="after")
+    def _names(self) -> Self:
+        if self.kind != "relax" and (self.frame is not None or self.limit is not None):
+            raise ValueError(f"{self.kind} has no frame and no limit: they are for relax")
+        return self
+
+
+class RemedyChange(Wire):
+    """What was changed, by how much (`unit`: times, deg, deg/s or deg/s^2), and that in words."""
+
+    what: str = Field(description="time; the axis yaw, pitch or roll; frame and limit; or nothing")
+    value: float
+    unit: str
+    statement: str
+
+
+class RemedyOut(Wire):
+    """The remedy that a plan is. What was changed is null until the search has ended."""
+
+    of: str = Field(description="The plan that it is a remedy of")
+    kind: RemedyKind
+    frame: FrameName | None
+    limit: LimitName | None
+    change: RemedyChange | None
+    sufficient: bool | None = Field(description="Whether the flight fits with it")
+    alternatives: list[RemedyChange] = Field(description="Other single limits that would do, the least raise first")
+
+
+class PlanOut(Wire):
+    """A plan and its job. `flyable` plans can be loaded; the others say why not in `refusal`."""
+
+    id: str
+    status: JobStatus
+    progress: ProgressOut
+    trajectory: Sha256
+    trajectory_name: str
+    rig: Name
+    rig_hash: str
+    method: str
+    options: dict[str, OptionValue]
+    start_deg: Four | None
+    created_at: datetime
+    started_at: datetime | None
+    finished_at: datetime | None
+    error: JobErrorOut | None
+    feasible: bool | None
+    flyable: bool
+    refusal: str | None
+    plan_hash: str | None
+    rate_hz: float | None
+    resampling: str | None = Field(description="How the flight was brought to the rig's rate")
+    samples: int | None
+    duration_s: float | None
+    lead_in_s: float | None
+    lead_out_s: float | None
+    report: ReportOut | None
+    verdict: str | None = Field(description="What the verdict rests on, in words")
+    margins: MarginsOut | None
+    remedy: RemedyOut | None = Field(description="Null: the flight as it is")
+
+
+class PlanSamples(Wire):
+    """A thinned plan for plots, lead-in and lead-out included; time zero is the flight's first sample.
+
+    Error and attitude are null in the leads. Peaks of every column are kept by the thinning.
+    """
+
+    id: str
+    samples: int
+    time_s: list[float]
+    angles_deg: dict[FrameName, list[float]]
+    rates_deg_s: dict[FrameName, list[float]]
+    accelerations_deg_s2: dict[FrameName, list[float]]
+    error_deg: list[float | None]
+    q: list[Four | None]
+    lead_in_s: float
+    lead_out_s: float
+
+
+class MethodOut(Wire):
+    """A method the server can solve with."""
+
+    name: str
+    source: str
+    claims_limits: bool
+    options: dict[str, OptionValue] = Field(description="Names and defaults")

@@ -1,0 +1,70 @@
+"""What happened, on the wire: runs, audit, and the server's own health."""
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import Field
+
+from fullpose_server.api.schemas.base import Wire
+from fullpose_server.api.schemas.session import RigHealth, StateName
+
+
+class RunOut(Wire):
+    """A recorded run; errors are those of the flight itself, running or held, leads left out."""
+
+    id: str
+    rig: str
+    incident: str | None = Field(
+        description="Null: a run. Else no flight: what was kept around a fault while no run was recorded, and the code"
+        " of its alarm"
+    )
+    error: str | None = Field(description="Why the record cannot be read: then nothing but its name is known")
+    plan_id: str | None
+    plan_hash: str | None
+    who: str
+    started_at: datetime | None
+    ended_at: datetime | None
+    duration_s: float | None
+    samples: int | None = Field(description="Null, like all that follows from them, while the run is being written")
+    lost_samples: int | None = Field(description="Sequence numbers that are missing, from its beginning to its end")
+    bytes: int
+    complete: bool = Field(description="False while it is being written, or where it was cut off or is damaged")
+    max_solve_error_deg: float | None
+    max_tracking_error_deg: float | None
+    max_lateness_us: float | None
+
+
+class AuditOut(Wire):
+    """One command, accepted or refused."""
+
+    id: int
+    at: datetime
+    who: str
+    rig: str
+    command: str
+    args: dict[str, Any]
+    lease_epoch: int | None
+    lease_sequence: int | None
+    state_before: StateName
+    state_after: StateName
+    accepted: bool
+    detail: str | None
+
+
+class ServerLimits(Wire):
+    max_upload_bytes: int
+    max_solve_samples: int
+
+
+class HealthOut(Wire):
+    """`status` is degraded where a rig process, a recorder or the planner does not answer, or a rig file is none."""
+
+    status: Literal["ok", "degraded"]
+    version: str
+    server_time: float
+    uptime_s: float
+    authenticated: bool = Field(description="False: no users are configured, anyone who reaches the port may command")
+    planner: Literal["idle", "busy", "starting", "stopped"]
+    limits: ServerLimits
+    rigs: dict[str, RigHealth]
+    warnings: list[str]

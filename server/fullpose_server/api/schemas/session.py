@@ -1,0 +1,304 @@
+"""The session on the wire: commands as a tagged union, the lease, the snapshot."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fullpose_server.api.schemas.base import Four, FrameName, Wire
+
+StateName = Literal[
+    "disconnected",
+    "idle",
+    "ready",
+    "armed",
+    "positioning",
+    "running",
+    "held",
+    "stopping",
+    "live",
+    "estopped",
+    "faulted",
+]
+Severity = Literal["warning", "fault", "emergency"]
+_INT64 = 2**63  # what database and rig process hold
+Ordinal = Annotated[int, Field(ge=0, lt=_INT64)]
+Word = Annotated[str, Field(max_length=64)]
+# Bounded, as all that a command brings is: the rig process reads it in the loop, in one packet.
+LiveOptionValue = bool | Annotated[int, Field(ge=-_INT64, lt=_INT64)] | float | Word
+
+
+class LeaseToken(Wire):
+    """Proof of holding the lease: its epoch, and a sequence that grows with every command."""
+
+    epoch: Ordinal
+    sequence: Ordinal
+
+
+class NoArgs(Wire):
+    """A command without arguments."""
+
+
+class LiveLoad(Wire):
+    """How a live source is flown: a step method that keeps the limits, and its options."""
+
+    method: Word = "exact"
+    options: dict[Word, LiveOptionValue] = Field(default={}, max_length=32)
+    first_sample_s: float = Field(default=5.0, gt=0.0, le=60.0, description="How long go_live waits for the source")
+
+
+class LoadArgs(Wire):
+    """A plan, or a live source."""
+
+    plan: str | None = Field(default=None, description="Id of a flyable plan of this rig")
+    live: LiveLoad | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if (self.plan is None) == (self.live is None):
+            raise ValueError("expected one of plan and live")
+        return self
+
+
+class ArmArgs(Wire):
+    """The pair that the caller means to arm; refused where another one is loaded."""
+
+    plan_hash: Word | None = None
+    rig_hash: Word | None = None
+
+
+class MoveArgs(Wire):
+    target_deg: Four
+
+
+class JogArgs(Wire):
+    """One step of one frame, from where the rig is commanded to be."""
+
+    frame: FrameName
+    step_deg: float
+
+
+class AcknowledgeArgs(Wire):
+    numbers: list[Ordinal] | None = Field(default=None, max_length=256, description="Of alarms; null: all that stand")
+
+
+class _Command(Wire):
+    lease: LeaseToken | None = None
+
+
+class Connect(_Command):
+    command: Literal["connect"]
+    args: NoArgs = NoArgs()
+
+
+class Load(_Command):
+    command: Literal["load"]
+    args: LoadArgs
+
+
+class Arm(_Command):
+    command: Literal["arm"]
+    args: ArmArgs = ArmArgs()
+
+
+class Start(_Command):
+    command: Literal["start"]
+    args: NoArgs = NoArgs()
+
+
+class Hold(_Command):
+    command: Literal["hold"]
+    args: NoArgs = NoArgs()
+
+
+class Resume(_Command):
+    command: Literal["resume"]
+    args: NoArgs = NoArgs()
+
+
+class Stop(_Command):
+    command: Literal["stop"]
+    args: NoArgs = NoArgs()
+
+
+class Move(_Command):
+    command: Literal["move"]
+    args: MoveArgs
+
+
+class Home(_Command):
+    command: Literal["home"]
+    args: NoArgs = NoArgs()
+
+
+class Jog(_Command):
+    command: Literal["jog"]
+    args: JogArgs
+
+
+class GoLive(_Command):
+    command: Literal["go_live"]
+    args: NoArgs = NoArgs()
+
+
+class Disarm(_Command):
+    command: Literal["disarm"]
+    args: NoArgs = NoArgs()
+
+
+class Unload(_Command):
+    command: Literal["unload"]
+    args: NoArgs = NoArgs()
+
+
+class Estop(_Command):
+    command: Literal["estop"]
+    args: NoArgs = NoArgs()
+
+
+class Acknowledge(_Command):
+    command: Literal["acknowledge"]
+    args: AcknowledgeArgs = AcknowledgeArgs()
+
+
+class Reset(_Command):
+    command: Literal["reset"]
+    args: NoArgs = NoArgs()
+
+
+CommandIn = Annotated[
+    Connect
+    | Load
+    | Arm
+    | Start
+    | Hold
+    | Resume
+    | Stop
+    | Move
+    | Home
+    | Jog
+    | GoLive
+    | Disarm
+    | Unload
+    | Estop
+    | Acknowledge
+    | Reset,
+    Field(discriminator="command"),
+]
+
+
+class CommandOut(Wire):
+    """A command that was accepted: what the session was and is."""
+
+    command: str
+    state_before: StateName
+    state_after: StateName
+    revision: int
+
+
+class LeaseIn(Wire):
+    """take: when free or silent; takeover: by force, audited; request: ask the holder; grant: hand over; renew."""
+
+    action: Literal["take", "takeover", "request", "grant", "renew"] = "take"
+    to: str | None = Field(
+        default=None, max_length=128, description="With grant: who of those who asked; null: the first"
+    )
+
+
+class LeaseOut(Wire):
+    """Who may command. `epoch` grows with every new holder; each command's sequence must be above `sequence`."""
+
+    holder: str | None
+    epoch: int
+    sequence: int
+    expires_s: float | None = Field(description="Until the holder counts as silent: the rig holds, stops, disarms")
+    requested_by: list[str]
+
+
+class PlanRef(Wire):
+    """The plan, or the live source, bound by load."""
+
+    plan_id: str
+    plan_hash: str
+    rig_hash: str
+    live: bool
+    name: str
+    duration_s: float | None
+
+
+class AlarmOut(Wire):
+    """A fault or warning, with its evidence; `value` and `limit` are in `unit`. `first` of a chain is its cause."""
+
+    number: int
+    code: str
+    severity: Severity
+    message: str
+    time_s: float = Field(description="Seconds since 1970, of the first occurrence")
+    frame: FrameName | None = None
+    value: float | None = None
+    limit: float | None = None
+    unit: str | None = None
+    first: bool = False
+    acknowledged_by: str | None = None
+    count: int = 1
+    last_time_s: float | None = Field(
+        default=None, description="Of the newest occurrence, where there was more than one"
+    )
+
+
+class RecorderOut(Wire):
+    """The recorder process of a rig."""
+
+    alive: bool
+    run: str = Field(description="Id of the run being written, or empty")
+    lost: int = Field(description="Samples that never reached the record")
+    lag: int = Field(description="Samples between the loop and the recorder")
+    bytes_written: int
+    free_bytes: int
+    error: str
+
+
+class LiveOut(Wire):
+    """The live source that is loaded."""
+
+    rate_hz: float = Field(description="Samples taken in the last second or so")
+    age_ms: float | None = Field(
+        description="How far the attitude flown lies beyond the newest sample; negative: known ahead; null: not heard"
+    )
+    accepted: int
+    dropped: int = Field(description="Late, doubled or overtaken: not used")
+    bad: int = Field(description="No samples at all")
+    clock_steps: int = Field(description="How often the source's clock began anew")
+    way_age_ms: float | None = Field(description="Since the preview's planner was heard; null: no such method")
+
+
+class RigHealth(Wire):
+    """How the rig process does; lateness over its whole life, by percentile."""
+
+    realtime: str = Field(description="Scheduling in words: real-time, or what is missing")
+    rate_hz: float
+    lateness_us: dict[str, float]
+    busy_us: float
+    ticks: int
+    deadline_misses: int
+    rig_alive: bool
+    rig_pid: int | None
+    heartbeat_age_s: float | None
+    recorder: RecorderOut | None
+    live: LiveOut | None = None
+
+
+class SessionOut(Wire):
+    """All an operator must know: state, what is allowed, who holds the lease, the plan, the alarms, health, pose."""
+
+    rig: str
+    state: StateName
+    revision: int
+    allowed: list[str]
+    lease: LeaseOut
+    plan: PlanRef | None
+    alarms: list[AlarmOut] = Field(description="Those that stand")
+    history: list[AlarmOut]
+    run_id: str | None
+    drive: str | None
+    health: RigHealth
+    pose_deg: Four | None

@@ -1,0 +1,91 @@
+"""Solving without a session: the batch of POST /solve and the messages of the WebSocket /solve."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fullpose_server.api.schemas.base import Four, FrameName, LimitName, Name, Problem, Wire
+from fullpose_server.api.schemas.plans import OptionValue, ReportOut
+
+
+class Attitudes(Wire):
+    """Attitudes at `time_s`: `q` (w, x, y, z), or `euler_deg` (yaw, pitch, roll)."""
+
+    time_s: Annotated[list[float], Field(min_length=1)]
+    q: list[Four] | None = None
+    euler_deg: list[tuple[float, float, float]] | None = None
+
+    @model_validator(mode="after")
+    def _one_attitude(self) -> Self:
+        if (self.q is None) == (self.euler_deg is None):
+            raise ValueError("expected one attitude: q or euler_deg")
+        rows = len(self.q if self.q is not None else self.euler_deg or [])
+        if rows != len(self.time_s):
+            raise ValueError(f"{rows} attitudes for {len(self.time_s)} values of time_s")
+        return self
+
+
+class SolveIn(Attitudes):
+    rig: Name
+    method: str = "exact"
+    options: dict[str, OptionValue] = Field(default={})
+    start_deg: Four | None = None
+
+
+class Limited(Wire):
+    """A sample whose attitude a limit did not allow."""
+
+    sample: int
+    frame: FrameName
+    limit: LimitName
+
+
+class SolveOut(Wire):
+    time_s: list[float]
+    angles_deg: list[Four]
+    error_deg: list[float]
+    limited: list[Limited]
+    report: ReportOut
+
+
+class OpenSolve(Wire):
+    """First message of the client."""
+
+    type: Literal["open"]
+    rig: Name
+    method: str = "exact"
+    options: dict[str, OptionValue] = Field(default={})
+    start_deg: Four | None = None
+
+
+class SolveSamples(Attitudes):
+    """The next attitudes of the flight; time goes on from message to message."""
+
+    type: Literal["samples"]
+
+
+SolveMessageIn = Annotated[OpenSolve | SolveSamples, Field(discriminator="type")]
+
+
+class Opened(Wire):
+    type: Literal["opened"] = "opened"
+    rig: str
+    method: str
+
+
+class Solved(Wire):
+    """Answer to one `samples` message, row by row; `limited.sample` counts within the message."""
+
+    type: Literal["solved"] = "solved"
+    time_s: list[float]
+    angles_deg: list[Four]
+    error_deg: list[float]
+    limited: list[Limited]
+
+
+class SolveProblem(Wire):
+    type: Literal["problem"] = "problem"
+    problem: Problem
+
+
+SolveMessageOut = Annotated[Opened | Solved | SolveProblem, Field(discriminator="type")]

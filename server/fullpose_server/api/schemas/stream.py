@@ -1,0 +1,180 @@
+"""Messages of the WebSockets /rigs/{rig}/stream and /runs/{run}/stream, both ways, tagged by `type`.
+
+A binary telemetry frame is little-endian: magic u4 "FPT1", version u2, count u2, seq u8, server_time f8, dropped u8,
+then `count` records as `hello.record` describes them.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from fullpose_server.api.schemas.base import CLIENT_NAME, Problem, Wire
+from fullpose_server.api.schemas.session import SessionOut, StateName
+
+Topic = Literal["telemetry", "session"]
+Encoding = Literal["json", "binary"]
+ClientName = Annotated[str, Field(pattern=CLIENT_NAME)]
+
+
+class Subscribe(Wire):
+    """What the client wants; sent again, it replaces the earlier one."""
+
+    type: Literal["subscribe"]
+    topics: list[Topic] = Field(default=["telemetry", "session"])
+    rate_hz: float = Field(default=30.0, gt=0.0, le=1000.0, description="Frames a second, not samples")
+    encoding: Encoding = "json"
+    every_sample: bool = Field(default=False, description="All samples since the last frame, else only the newest")
+    since_seq: int | None = Field(default=None, ge=0, description="Resume after this sample; null: from now on")
+
+
+class Ping(Wire):
+    type: Literal["ping"]
+    t: float
+
+
+class Seek(Wire):
+    """Replay only: to that time, playing or not. The newest sample there is sent at once."""
+
+    type: Literal["seek"]
+    time_s: float = Field(ge=0.0, description="After the run's first sample")
+
+
+class Speed(Wire):
+    """Replay only."""
+
+    type: Literal["speed"]
+    factor: float = Field(gt=0.0, le=100.0, description="1: as fast as it was")
+
+
+class Pause(Wire):
+    """Replay only."""
+
+    type: Literal["pause"]
+
+
+class Play(Wire):
+    """Replay only: on from here; from the beginning where it has come to the end."""
+
+    type: Literal["play"]
+
+
+class StopNow(Wire):
+    """Live only: the lanes of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; handled at once."""
+
+    type: Literal["stop", "estop"]
+    client: ClientName | None = Field(default=None, description="As the header X-Fullpose-Client, which it replaces")
+
+
+Playback = Seek | Speed | Pause | Play
+StreamIn = Annotated[Subscribe | Ping | StopNow | Playback, Field(discriminator="type")]
+
+
+class RecordField(Wire):
+    """One field of the binary record."""
+
+    name: str
+    type: str = Field(description="NumPy type string, little-endian")
+    count: int
+    offset: int
+
+
+class Record(Wire):
+    """The binary record: its size in bytes and its fields."""
+
+    size: int
+    fields: list[RecordField]
+
+
+class ReplayOf(Wire):
+    """The run that is replayed."""
+
+    run: str
+    duration_s: float
+    started: float | None = Field(description="Seconds since 1970, of the first sample")
+    scene: str = Field(description="Where this client's scene of it is, while the WebSocket is open")
+
+
+class Hello(Wire):
+    """First message of the server. `replay` is null where a rig is streamed as it lives."""
+
+    type: Literal["hello"] = "hello"
+    schema_: Literal["fullpose.stream/1"] = Field(default="fullpose.stream/1", alias="schema")
+    server_time: float
+    rig: str
+    session: SessionOut
+    fields: list[str]
+    record: Record
+    replay: ReplayOf | None = None
+
+
+class Telemetry(Wire):
+    """Samples as columns. `seq` is the newest sample's; `dropped` counts what this client has missed so far."""
+
+    type: Literal["telemetry"] = "telemetry"
+    seq: int
+    server_time: float
+    dropped: int
+    sample_seq: list[int]
+    time_ns: list[int]
+    wall_ns: list[int]
+    state: list[int]
+    flags: list[int]
+    revision: list[int]
+    path_time_s: list[float | None]
+    path_scale: list[float | None]
+    demand: list[list[float | None]]
+    demand_rate: list[list[float | None]]
+    demand_acceleration: list[list[float | None]]
+    measured: list[list[float | None]]
+    measured_rate: list[list[float | None]]
+    target: list[list[float | None]]
+    solve_error_deg: list[float | None]
+    tracking_error_deg: list[float | None]
+    following_error_deg: list[list[float | None]]
+    margin: list[float | None]
+    lateness_us: list[float | None]
+    tick: list[int]
+
+
+class SessionChanged(Wire):
+    type: Literal["session"] = "session"
+    revision: int
+    server_time: float
+    session: SessionOut
+
+
+class Replayed(Wire):
+    """Where a replay is: the answer to seek, speed, pause and play; with the topic session also when it ends."""
+
+    type: Literal["replay"] = "replay"
+    time_s: float
+    playing: bool
+    factor: float
+
+
+class Pong(Wire):
+    type: Literal["pong"] = "pong"
+    t: float
+    server_time: float
+
+
+class Stopped(Wire):
+    """The answer to stop and estop: what the session was and is."""
+
+    type: Literal["stopped"] = "stopped"
+    command: Literal["stop", "estop"]
+    state_before: StateName
+    state_after: StateName
+    revision: int
+
+
+class StreamProblem(Wire):
+    """A message of the client that was not understood; the stream goes on."""
+
+    type: Literal["problem"] = "problem"
+    problem: Problem
+
+
+StreamOut = Annotated[
+    Hello | Telemetry | SessionChanged | Replayed | Pong | Stopped | StreamProblem, Field(discriminator="type")
+]

@@ -1,0 +1,81 @@
+"""Trajectories on the wire."""
+
+from datetime import datetime
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fullpose_server.api.schemas.base import Four, Notice, Sha256, Wire
+
+ConventionName = Literal["nue", "ned"]
+Samples = Annotated[list[float], Field(min_length=1)]
+
+_EULER = {"nue": ("yaw_deg", "pitch_deg", "roll_deg"), "ned": ("heading_deg", "pitch_deg", "bank_deg")}
+
+
+class TrajectoryIn(Wire):
+    """A flight as JSON columns: `time_s` and one attitude, Euler angles or `q` (w, x, y, z)."""
+
+    name: str = Field(min_length=1, max_length=200)
+    convention: ConventionName = "nue"
+    time_s: Samples
+    yaw_deg: Samples | None = None
+    heading_deg: Samples | None = None
+    pitch_deg: Samples | None = None
+    roll_deg: Samples | None = None
+    bank_deg: Samples | None = None
+    q: list[Four] | None = None
+
+    @model_validator(mode="after")
+    def _one_attitude(self) -> Self:
+        euler = _EULER[self.convention]
+        given = {n for n in ("yaw_deg", "heading_deg", "pitch_deg", "roll_deg", "bank_deg") if getattr(self, n)}
+        if self.q is None and given != set(euler):
+            raise ValueError(f"expected {', '.join(euler)} or q for convention {self.convention}")
+        if self.q is not None and given:
+            raise ValueError("expected one attitude: Euler angles or q, not both")
+        for column in (*given, "q"):
+            values = getattr(self, column)
+            if values is not None and len(values) != len(self.time_s):
+                raise ValueError(f"{column} has {len(values)} values, time_s has {len(self.time_s)}")
+        return self
+
+    def columns(self) -> dict[str, list[float]]:
+        """The columns a file would have."""
+        table: dict[str, list[float]] = {"time_s": self.time_s}
+        if self.q is not None:
+            table |= {name: [row[i] for row in self.q] for i, name in enumerate(("qw", "qx", "qy", "qz"))}
+        else:
+            table |= {name: getattr(self, name) for name in _EULER[self.convention]}
+        return table
+
+
+class TrajectoryOut(Wire):
+    """A stored flight. Its address is the SHA-256 of the attitude samples, whatever file they came in."""
+
+    sha256: Sha256
+    source_sha256: Sha256 = Field(description="SHA-256 of the uploaded bytes")
+    name: str
+    convention: ConventionName
+    source_format: Literal["csv", "parquet", "json"]
+    source_bytes: int
+    samples: int
+    start_s: float
+    duration_s: float
+    rate_hz: float | None = Field(description="From the median step; null for one sample")
+    uniform: bool
+    peak_body_rate_deg_s: float | None
+    warnings: list[Notice]
+    created_at: datetime
+
+
+class TrajectoryPreview(Wire):
+    """A thinned flight for plots: columns of equal length."""
+
+    sha256: Sha256
+    samples: int = Field(description="Of the whole flight")
+    time_s: list[float]
+    yaw_deg: list[float]
+    pitch_deg: list[float]
+    roll_deg: list[float]
+    q: list[Four]

@@ -1,0 +1,113 @@
+"""The server's event loop: the app's lifespan, uvicorn on a socket that is bound already, and an orderly end."""
+
+import asyncio
+import contextlib
+import gc
+import os
+import signal
+import socket
+import sys
+import threading
+from collections.abc import Awaitable, Callable, Iterator
+
+import uvicorn
+import uvloop
+
+from fullpose_server.app import create_app
+from fullpose_server.cli._exit import CommandError, fail
+from fullpose_server.errors import ServerError
+from fullpose_server.runtime.supervisor.process_manager import HostError
+from fullpose_server.scene.scenes import warm
+from fullpose_server.settings import Settings
+
+Ready = Callable[[str], Awaitable[None]]
+WARM_AFTER_S = 0.5
+# How long a thread that computes (reading an upload) may keep the interpreter from the event loop, at every single
+# send. Python's own 5 ms are half of what an E-stop may take.
+SWITCH_S = 0.0001
+PRIORITY = 1  # of 99; a rig's loop has 60
+
+
+def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
+    """Serve on `listener` until SIGINT or SIGTERM; the address is the first line of stdout."""
+    sys.setswitchinterval(SWITCH_S)
+    before_others()
+    try:
+        with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
+            runner.run(_run(settings, listener, url, ready))
+    except ServerError as error:
+        fail(str(error))
+    except (HostError, CommandError) as error:
+        fail(str(error), 1)
+
+
+def before_others() -> None:
+    """Run this thread before all that is not real-time, where the system lets us, and after the rigs' loops.
+
+    What it starts, threads and processes, does not inherit it. A nice value would not do: Linux weighs it inside a
+    session only.
+    """
+    with contextlib.suppress(PermissionError):
+        os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
+
+
+def _warm() -> None:
+    warm()
+    # What has been loaded stays: without this each full collection looks at all of it again, and nothing else runs for
+    # the 120 ms that takes.
+    gc.freeze()
+
+
+async def _run(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
+    app = create_app(settings)
+    config = uvicorn.Config(
+        app,
+        lifespan="off",  # ours, below: its errors are for the person at the terminal
+        log_config=None,
+        access_log=False,
+        ws_per_message_deflate=False,  # telemetry is small and frequent
+        timeout_graceful_shutdown=3,
+        server_header=False,
+    )
+    async with app.router.lifespan_context(app):
+        server = _Server(config)
+        serving = asyncio.create_task(server.serve(sockets=[listener]))
+        sys.stdout.write(f"{url}\n")
+        sys.stdout.flush()
+        # What the first look at a scene needs is loaded when the server has begun to answer, and nobody waits for it.
+        warming = threading.Thread(target=_warm, name="scene-warm", daemon=True)
+        later = asyncio.get_running_loop().call_later(WARM_AFTER_S, warming.start)
+        beside = asyncio.create_task(_beside(ready, url, server))
+        await serving
+        later.cancel()
+        beside.cancel()
+        results = await asyncio.gather(beside, return_exceptions=True)
+    for result in results:
+        if isinstance(result, Exception):
+            raise result
+
+
+async def _beside(ready: Ready, url: str, server: uvicorn.Server) -> None:
+    try:
+        await ready(url)
+    except Exception:
+        if not server.should_exit:  # at the end every connection of ours breaks off too
+            server.should_exit = True
+            raise
+
+
+class _Server(uvicorn.Server):
+    """Ends at a signal without raising it again afterwards: what follows is our own orderly end."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.add_signal_handler(number, self.handle_exit, number, None)
+        try:
+            yield
+        finally:
+            for number in (signal.SIGINT, signal.SIGTERM):
+                loop.remove_signal_handler(number)
+                # The end has begun; a second signal must not cut it short and leave a rig moving.
+                signal.signal(number, signal.SIG_IGN)

@@ -1,0 +1,82 @@
+"""Before the server runs: its settings and its socket, and what is wrong with them. Shared by `serve` and `demo`."""
+
+import errno
+import logging
+import socket
+import sys
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+from pydantic_settings import SettingsError
+
+from fullpose_server.cli._exit import fail
+from fullpose_server.settings import Settings
+
+BACKLOG = 512
+UNSENT = 16_384  # bytes the system may hold unsent for a client; what is older than that would only make it late
+UNAUTHENTICATED = (
+    "no users are configured, so this server listens on this machine only: use --host 127.0.0.1, or allow the network "
+    "with FULLPOSE_ALLOW_UNAUTHENTICATED_NETWORK=true"
+)
+
+Ready = Callable[[str], Awaitable[None]]
+
+
+def settings_of(host: str | None, port: int | None, data_dir: Path | None) -> Settings:
+    """Settings from the environment, with what the command line says over them. Exits where they cannot be."""
+    given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir}
+    try:
+        settings = Settings(**{key: value for key, value in given.items() if value is not None})
+    except ValidationError as error:
+        fail("; ".join(_told(wrong) for wrong in error.errors()))
+    except SettingsError as error:  # a variable that should be JSON and is none
+        fail(f"settings: {error}")
+    if not settings.loopback and not settings.allow_unauthenticated_network:
+        fail(f"--host {settings.host}: {UNAUTHENTICATED}")
+    return settings
+
+
+def _told(wrong: ErrorDetails) -> str:
+    name = "_".join(str(part) for part in wrong["loc"])
+    word = wrong["msg"].replace("Input should be", "expected").replace("Value error, ", "")
+    return f"FULLPOSE_{name.upper()} = {wrong['input']!r}: {word}"
+
+
+def run(settings: Settings, ready: Ready) -> None:
+    """Serve until SIGINT or SIGTERM. The address is the first line of stdout; then `ready` runs beside the server."""
+    logging.basicConfig(format="%(asctime)s %(name)s %(message)s", level=logging.WARNING, stream=sys.stderr)
+    listener = bind(settings.host, settings.port)
+    from fullpose_server.cli._event_loop import serve  # seconds; what can be refused without it has been
+
+    serve(settings, listener, address(listener), ready)
+
+
+def bind(host: str, port: int) -> socket.socket:
+    """The listening socket. Exits with a clear line where the port is taken or the host is not ours."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    # The protocol is said outright: asyncio sets TCP_NODELAY only on sockets that say it, and without it every small
+    # answer waits 40 ms for the other side's delayed acknowledgement.
+    listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT)  # accepted sockets inherit it
+    try:
+        listener.bind((host.strip("[]"), port))
+    except OSError as error:
+        listener.close()
+        if error.errno == errno.EADDRINUSE:
+            fail(f"port {port} on {host} is in use by another program: stop it, or choose another with --port")
+        fail(f"cannot listen on {host} port {port}: {error.strerror or error}")
+    listener.listen(BACKLOG)
+    return listener
+
+
+def address(listener: socket.socket) -> str:
+    """The URL of the console."""
+    host, port = listener.getsockname()[:2]
+    if host in ("0.0.0.0", "::"):
+        host = "localhost"
+    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"

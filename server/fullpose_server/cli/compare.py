@@ -1,0 +1,102 @@
+"""`fullpose compare`: methods side by side on one flight and rig."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from fullpose_server.cli._exit import DONE
+from fullpose_server.cli._flight import read_flight
+from fullpose_server.cli._outputs import check_outputs
+from fullpose_server.cli._progress import progress_bar
+from fullpose_server.cli.solve import METHODS
+
+COLUMNS = ("method", "exact", "largest error", "beyond limits", "limited", "peak rate", "peak accel.", "step")
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("compare", help="Put methods side by side on one flight and rig.")(compare)
+
+
+def compare(
+    flight: Annotated[
+        Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
+    ],
+    rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
+    methods: Annotated[
+        str, typer.Option(help=f"With commas between, options after colons (alm:mode=open_loop), of {METHODS}.")
+    ] = METHODS.replace(" ", ""),
+    report: Annotated[Path | None, typer.Option(help="Write the figures as JSON.")] = None,
+    page: Annotated[Path | None, typer.Option(help="Write table and plots as one self-contained HTML page.")] = None,
+    start: Annotated[
+        str | None, typer.Option(help="Start pose base,outer,middle,inner in degrees; without it the pose is free.")
+    ] = None,
+    convention: Annotated[
+        str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
+    ] = "nue",
+    rate: Annotated[
+        float | None, typer.Option(help="Bring the flight to this rate [Hz] first; without it its samples are solved.")
+    ] = None,
+) -> None:
+    """Solve with each method, print the figures, write what was asked for.
+
+    Exit 2: bad input, or no method applies to the rig; nothing written.
+    """
+    from fullpose.compare import variants
+    from fullpose_server.formats.output_file import write_text
+    from fullpose_server.formats.rig_file import find_rig
+    from fullpose_server.planning.comparison import make_comparison
+
+    asked = variants([text for text in methods.split(",") if text.strip()])
+    chosen = find_rig(rig).rig
+    check_outputs({"--report": report, "--page": page}, flight, rig)
+    read = read_flight(flight, convention, chosen, start)
+    with progress_bar("compare") as bar:
+        order = {one.label: k for k, one in enumerate(asked)}
+
+        def progress(label: str, done: int, total: int) -> None:
+            if bar is not None:
+                bar(order[label] * total + done, len(order) * total)
+
+        made = make_comparison(flight.name, read.time, read.q, chosen, asked, read.start, rate, progress)
+    if report is not None:
+        write_text(report, json.dumps(made.report, indent=2) + "\n")
+    if page is not None:
+        write_text(page, made.page)
+    typer.echo(_table(made.report))
+    raise typer.Exit(DONE)
+
+
+def _table(report: dict[str, Any]) -> str:
+    from fullpose_server.formats.report import exact_text
+
+    rows = [COLUMNS]
+    refusals = []
+    for method in report["methods"]:
+        if method["refusal"] is not None:
+            refusals.append(f"{method['label']}: {method['refusal']}")
+            continue
+        peaks = method["peak"].values()
+        rows.append(
+            (
+                method["label"],
+                exact_text(method),
+                f"{method['max_error_deg']:.2g} deg",
+                str(method["limit_violation_samples"]),
+                str(method["limited_samples"]),
+                f"{max(peak['rate_deg_s'] for peak in peaks):.4g} deg/s",
+                f"{max(peak['acceleration_deg_s2'] for peak in peaks):.4g} deg/s2",
+                f"{method['step_us']['median']:.2f} us",
+            )
+        )
+    widths = [max(len(row[k]) for row in rows) for k in range(len(COLUMNS))]
+    lines = [
+        "  ".join([row[0].ljust(widths[0]), *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:], strict=True))])
+        for row in rows
+    ]
+    heading = f"{report['flight']} on {report['rig']}: {report['samples']} samples over {report['duration_s']:.6g} s"
+    if report["resampling"]:
+        heading += f" ({report['resampling']})"
+    return "\n".join([heading, *lines, *refusals])

@@ -1,0 +1,140 @@
+"""`fullpose solve`: the frame angles of a flight."""
+
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail, say
+from fullpose_server.cli._flight import read_flight
+from fullpose_server.cli._outputs import check_outputs
+from fullpose_server.cli._progress import progress_bar
+
+if TYPE_CHECKING:
+    from fullpose.plan import Plan
+    from fullpose.rig import Rig
+    from fullpose.solution import Solution
+    from fullpose_server.cli._flight import Flight
+
+METHODS = (
+    "plan, preview, exact, alm, dwln, lagrange, weighted, gradient_projection, fixed_joint, clamped, follow_up, "
+    "three_axis"
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("solve", help="Solve the frame angles of a flight (CSV or Parquet).")(solve)
+
+
+def solve(
+    flight: Annotated[
+        Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
+    ],
+    rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
+    out: Annotated[Path, typer.Option(help="Angles, one row an input row; Parquet where it ends in .parquet.")],
+    method: Annotated[str, typer.Option(help=f"{METHODS}.")] = "plan",
+    report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
+    start: Annotated[
+        str | None, typer.Option(help="Start pose base,outer,middle,inner in degrees; without it the pose is free.")
+    ] = None,
+    plot: Annotated[Path | None, typer.Option(help="Write the plots as one HTML page.")] = None,
+    convention: Annotated[
+        str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
+    ] = "nue",
+    option: Annotated[
+        list[str] | None, typer.Option("--option", "-o", metavar="NAME=VALUE", help="Option of the method.")
+    ] = None,
+) -> None:
+    """Solve, write OUT and what else was asked for. Exit 2: bad input, OUT untouched. Exit 3: not feasible."""
+    from fullpose.attitude import dcm_from_quaternion
+    from fullpose.verify import verify
+    from fullpose_server.formats.output_file import write_solution, write_text
+    from fullpose_server.formats.report import make_report, verdict_report, why_infeasible, why_not_exact
+    from fullpose_server.formats.rig_file import find_rig
+
+    chosen = find_rig(rig).rig
+    check_outputs({"--out": out, "--report": report, "--plot": plot}, flight, rig)
+    read = read_flight(flight, convention, chosen, start)
+    attitude = dcm_from_quaternion(read.q)
+    solution, planned = _solve(read, attitude, chosen, method, option or [])
+    made = make_report(solution, verify(solution.time, solution.angles, chosen, attitude))
+    made["warnings"] = [{"code": c.code, "message": c.message} for c in read.warnings]
+    if planned is not None:
+        made.update(verdict_report(planned))
+    with progress_bar("write") as progress:
+        write_solution(out, solution, progress)
+    if report is not None:
+        from fullpose.plan.verdict import margins
+        from fullpose_server.formats.report import margins_report
+
+        made["margins"] = margins_report(margins(solution.time, solution.angles, chosen), chosen)
+        write_text(report, json.dumps(made, indent=2) + "\n")
+    if plot is not None:
+        from fullpose_server.pages.plot_page import plot_page
+
+        write_text(plot, plot_page(solution, made, flight.name))
+    typer.echo(_summary(made))
+    why = why_infeasible(made)
+    statement = made["verdict"]["statement"] if planned is not None else ""
+    if why is not None:
+        rests = f". {statement}" if statement else ""
+        fail(f"{flight} is not feasible on {chosen.name} with {method}: {why}{rests}", NOT_FEASIBLE)
+    if planned is not None:
+        say(f"{flight}: {statement}")
+        if planned.lead_note:
+            say(f"{flight}: a rig cannot fly it from rest to rest: {planned.lead_note}")
+    if (missed := why_not_exact(made)) is not None:
+        say(f"{flight}: warning: {missed}")
+    raise typer.Exit(DONE)
+
+
+def _solve(
+    flight: "Flight", attitude: Any, rig: "Rig", method: str, texts: list[str]
+) -> tuple["Solution", "Plan | None"]:
+    """The solution; of method plan the whole plan, too, which says what the verdict rests on."""
+    from fullpose.registry import method_options, parse_option
+    from fullpose.solve import PLAN
+    from fullpose.solve import solve as solve_flight
+
+    options = method_options(method, dict(parse_option(text, method) for text in texts))
+    with progress_bar(method) as progress:
+        if method == PLAN:
+            from fullpose.plan import plan
+
+            whole = plan(
+                flight.time,
+                attitude,
+                rig,
+                start=flight.start,
+                options=options,
+                progress=progress,
+                clock=time.perf_counter,
+            )
+            return whole.solution, whole
+        solution = solve_flight(
+            flight.time,
+            attitude,
+            rig,
+            method=method,
+            options=options,
+            start=flight.start,
+            clock=time.perf_counter,
+            progress=progress,
+        )
+    return solution, None
+
+
+def _summary(report: dict[str, Any]) -> str:
+    from fullpose_server.formats.report import exact_text
+
+    peaks = ", ".join(f"{frame} {peak['rate_deg_s']:.1f}" for frame, peak in report["peak"].items())
+    error = report["max_error_deg"]
+    exact = "exact" if report["exact_samples"] == report["samples"] else f"{exact_text(report)} of the samples exact"
+    return (
+        f"{report['samples']} samples on {report['rig']} with {report['method']}: "
+        f"{'feasible' if report['feasible'] else 'not feasible'}, {exact}, largest error {error:.3g} deg, "
+        f"peak rates {peaks} deg/s, solved in {report['solve_s']:.3g} s"
+    )

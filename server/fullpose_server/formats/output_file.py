@@ -1,0 +1,132 @@
+"""Writing the solved angles: CSV at 17 significant digits, or Parquet. The file appears whole or not at all."""
+
+import os
+import stat
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from fullpose.solution import Solution
+from fullpose_server.errors import FileError
+
+COLUMNS = ("time_s", "base_deg", "outer_deg", "middle_deg", "inner_deg", "error_deg", "limited")
+_ROW = "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d\n"
+_CHUNK = 4096
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A path beside `path` to write to; it takes the place of `path` at the end, and is removed by an exception.
+
+    Links are followed: what they lead to is replaced. Raises `FileError` as `check_writable`.
+    """
+    target = _target(path)
+    descriptor, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    os.close(descriptor)
+    draft = Path(name)
+    try:
+        yield draft
+        mask = os.umask(0)
+        os.umask(mask)
+        draft.chmod(0o666 & ~mask)  # mkstemp's files are private; this one is like any other
+        draft.replace(target)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+
+
+def check_writable(path: Path) -> None:
+    """Raise `FileError` where `path` cannot become a file, before work is done for it."""
+    target = _target(path)
+    folder = target.parent
+    if not folder.exists():
+        raise FileError(str(path), f"a place to write, there is no folder {folder}")
+    if not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
+        raise FileError(str(path), f"a place to write, {folder} is not one")
+
+
+def check_apart(outputs: Mapping[str, Path | None], inputs: Mapping[str, Path]) -> None:
+    """Raise `FileError` where two outputs are one file, or an output is an input: it would be lost. None is no file."""
+    taken = dict(inputs)
+    for name, path in outputs.items():
+        if path is None:
+            continue
+        other = next((other for other, there in taken.items() if _same(path, there)), None)
+        if other is not None:
+            raise FileError(str(path), f"another file for {name}, this one is {other}")
+        taken[name] = path
+
+
+def _target(path: Path) -> Path:
+    """The file that is or will be at `path`, links followed. Raises `FileError` for what is there and no plain file.
+
+    Not written to directly: a file that appears whole or not at all has to be put in place of another.
+    """
+    if str(path) == "-":
+        raise FileError("-", "the name of a file, standard output is not written to")
+    target = Path(os.path.realpath(path))
+    try:
+        mode = path.stat().st_mode
+    except OSError:
+        if target.is_symlink():
+            raise FileError(str(path), "a file to write, this is a link that leads nowhere") from None
+        return target
+    if stat.S_ISDIR(mode):
+        raise FileError(str(path), "a file to write, this is a folder")
+    if not stat.S_ISREG(mode):
+        raise FileError(str(path), "a plain file to write, this is a device, pipe or socket")
+    return target
+
+
+def _same(one: Path, other: Path) -> bool:
+    try:
+        return one.samefile(other)
+    except OSError:  # one of them is still to be made
+        return os.path.realpath(one) == os.path.realpath(other)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all."""
+    with replacing(path) as draft:
+        draft.write_text(text, encoding="utf-8")
+
+
+def write_solution(path: Path, solution: Solution, progress: Callable[[int, int], None] | None = None) -> None:
+    """Write one row a sample; Parquet where the name ends in .parquet, else CSV."""
+    with replacing(path) as draft:
+        if path.suffix == ".parquet":
+            _write_parquet(draft, solution)
+        else:
+            _write_csv(draft, solution, progress)
+
+
+def _write_csv(path: Path, solution: Solution, progress: Callable[[int, int], None] | None) -> None:
+    n = solution.time.size
+    with path.open("w", encoding="ascii", newline="") as stream:
+        stream.write(",".join(COLUMNS) + "\n")
+        for begin in range(0, n, _CHUNK):
+            part = slice(begin, min(begin + _CHUNK, n))
+            rows = np.column_stack(
+                [
+                    solution.time[part],
+                    np.rad2deg(solution.angles[part]),
+                    np.rad2deg(solution.error[part]),
+                    solution.limited[part] > 0,
+                ]
+            )
+            stream.write(_ROW * len(rows) % tuple(rows.ravel().tolist()))
+            if progress is not None:
+                progress(part.stop, n)
+
+
+def _write_parquet(path: Path, solution: Solution) -> None:
+    import pyarrow as pa  # half the start-up of a solve that writes CSV
+    import pyarrow.parquet as pq
+
+    angles = np.rad2deg(solution.angles)
+    columns = [solution.time, *angles.T, np.rad2deg(solution.error), (solution.limited > 0).astype(np.int8)]
+    table = pa.table(dict(zip(COLUMNS, [pa.array(np.ascontiguousarray(column)) for column in columns], strict=True)))
+    pq.write_table(table, path)

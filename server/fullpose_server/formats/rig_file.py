@@ -1,0 +1,193 @@
+"""Rigs: the built-in ones and TOML files (DESIGN: a rig file). Degrees in the file, radians in `solver`.
+
+Geometry, limits and payload are read here; how the rig is operated in `rig_operating`.
+"""
+
+import math
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fullpose.errors import RigError
+from fullpose.rig import FRAMES, FrameLimits, Geometry, Rig, builtin_rigs
+from fullpose_server.errors import FileError, NotFoundError
+from fullpose_server.formats.rig_keys import bad, number, only, table_of
+from fullpose_server.formats.rig_operating import TABLES, read_operating
+from fullpose_server.operating import OperatingConfig
+
+# Key in the file -> field of `FrameLimits`; all in degrees but the weight.
+FRAME_KEYS = {
+    "min_deg": "min",
+    "max_deg": "max",
+    "max_rate_deg_s": "max_rate",
+    "max_acceleration_deg_s2": "max_acceleration",
+    "weight": "weight",
+    "home_deg": "home",
+}
+DEFAULT_SIZE_M = (0.3, 0.2, 0.2)
+_DEFAULTS = OperatingConfig()
+_NO_LIMIT = "a finite number; leave the key out for no limit"
+
+
+@dataclass(frozen=True)
+class Payload:
+    """What the rig carries: a box, or a mesh file beside the rig file."""
+
+    size_m: tuple[float, float, float] | None = DEFAULT_SIZE_M
+    mesh: str | None = None
+
+
+@dataclass(frozen=True)
+class RigEntry:
+    """A rig, its payload, whether it comes with Fullpose, and how it is operated."""
+
+    rig: Rig
+    payload: Payload
+    builtin: bool
+    operating: OperatingConfig = _DEFAULTS
+
+
+def read_rig(path: Path, defaults: OperatingConfig = _DEFAULTS) -> RigEntry:
+    """The rig in a TOML file; it is operated by `defaults` but for what the file says.
+
+    Raises `FileError` naming key, value and what was expected.
+    """
+    file = str(path)
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise FileError(file, f"TOML ({error})") from None
+    except UnicodeDecodeError:
+        raise FileError(file, "TOML text in UTF-8, this is a binary file") from None
+    return parse_rig(table, file, defaults)
+
+
+def parse_rig(table: dict[str, Any], file: str, defaults: OperatingConfig = _DEFAULTS) -> RigEntry:
+    """The rig of a parsed file; `file` is for messages."""
+    only(table, {"name", "geometry", "frames", "payload", *TABLES}, "", file)
+    name, geometry = table.get("name"), table.get("geometry")
+    if not isinstance(name, str) or not name:
+        raise bad(file, "name", name, "a name")
+    if geometry not in [kind.value for kind in Geometry]:
+        raise bad(file, "geometry", geometry, "one of " + ", ".join(Geometry))
+    frames = table_of(table.get("frames", {}), "frames", file, "tables such as [frames.outer]")
+    real = [FRAMES[index] for index in Geometry(geometry).frames]
+    only(frames, set(real), "frames.", file)
+    try:
+        rig = Rig(name, Geometry(geometry), _limits(frames, file))
+    except RigError as error:
+        raise _in_degrees(error, frames, file) from None
+    payload = _payload(table.get("payload", {}), file)
+    return RigEntry(rig, payload, builtin=False, operating=read_operating(table, file, defaults))
+
+
+def find_rig(name_or_file: str, folder: Path | None = None) -> RigEntry:
+    """A rig by name, built-in or in `folder`, or by the path of a TOML file. Raises `NotFoundError`, `FileError`."""
+    rigs = builtin_rigs()
+    if name_or_file in rigs:
+        return RigEntry(rigs[name_or_file], Payload(), builtin=True)
+    if folder is not None and (path := folder / f"{name_or_file}.toml").is_file():
+        return read_rig(path)
+    path = Path(name_or_file)
+    if path.is_file():
+        return read_rig(path)
+    raise NotFoundError("rig", name_or_file, f"expected the path of a rig file or one of {', '.join(rigs)}")
+
+
+class RigStore:
+    """The rigs of a server: built in, and the TOML files of its data folder, read again at every use.
+
+    They are operated by `defaults` but for what a file says. A file that is no rig costs the others nothing.
+    """
+
+    def __init__(self, folder: Path, defaults: OperatingConfig = _DEFAULTS) -> None:
+        self.folder = folder
+        self._defaults = defaults
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def all(self) -> list[RigEntry]:
+        """All rigs, the built-in ones first; files that are no rigs are left out (see `broken`)."""
+        return self._builtin() + [found for found in self._read() if isinstance(found, RigEntry)]
+
+    def broken(self) -> list[FileError]:
+        """What is wrong with the files that are no rigs."""
+        return [found for found in self._read() if isinstance(found, FileError)]
+
+    def get(self, name: str) -> RigEntry:
+        """One rig. Raises `NotFoundError`, and `FileError` where its own file is no rig."""
+        for entry in self._builtin():
+            if entry.rig.name == name:
+                return entry
+        for path in self.folder.glob("*.toml"):
+            if path.stem == name:
+                return self._checked(path)
+        raise NotFoundError("rig", name)
+
+    def _builtin(self) -> list[RigEntry]:
+        return [RigEntry(rig, Payload(), builtin=True, operating=self._defaults) for rig in builtin_rigs().values()]
+
+    def _read(self) -> list[RigEntry | FileError]:
+        found: list[RigEntry | FileError] = []
+        for path in sorted(self.folder.glob("*.toml")):
+            try:
+                found.append(self._checked(path))
+            except FileError as error:
+                found.append(error)
+        return found
+
+    def _checked(self, path: Path) -> RigEntry:
+        entry = read_rig(path, self._defaults)
+        if entry.rig.name != path.stem:
+            raise bad(str(path), "name", entry.rig.name, f"{path.stem!r}, as the file is called")
+        if entry.rig.name in builtin_rigs():
+            raise bad(str(path), "name", entry.rig.name, "a name that no built-in rig has")
+        return entry
+
+
+def _limits(frames: dict[str, Any], file: str) -> tuple[FrameLimits, FrameLimits, FrameLimits, FrameLimits]:
+    base, outer, middle, inner = (_frame(frames.get(name, {}), f"frames.{name}", file) for name in FRAMES)
+    return base, outer, middle, inner
+
+
+def _frame(given: Any, where: str, file: str) -> FrameLimits:
+    table = table_of(given, where, file)
+    only(table, set(FRAME_KEYS), f"{where}.", file)
+    values = {}
+    for key, field in FRAME_KEYS.items():
+        if key in table:
+            value = number(table[key], f"{where}.{key}", file, _NO_LIMIT)
+            values[field] = value if key == "weight" else math.radians(value)
+    return FrameLimits(**values)
+
+
+def _in_degrees(error: RigError, frames: dict[str, Any], file: str) -> FileError:
+    """What is wrong with a frame, in the keys and degrees of the file."""
+    _, frame, *field = error.field.split(".")
+    where, table = f"frames.{frame}", frames.get(frame, {})
+    if field:
+        key = next(key for key, name in FRAME_KEYS.items() if name == field[0])
+        low, high = table.get("min_deg", -math.inf), table.get("max_deg", math.inf)
+        expected = f"a position inside the range, {low:g} to {high:g} deg" if key == "home_deg" else error.expected
+        return bad(file, f"{where}.{key}", table.get(key, 0.0), expected)
+    if "min_deg" in table and "max_deg" in table:
+        return bad(file, f"{where}.max_deg", table["max_deg"], f"at least min_deg, {table['min_deg']:g}")
+    given, other = ("min_deg", "max_deg") if "min_deg" in table else ("max_deg", "min_deg")
+    hint = "a single stop: give the other one as far as the frame may ever turn, in degrees"
+    return bad(file, f"{where}.{given}", table[given], f"{other} beside it ({hint})")
+
+
+def _payload(given: Any, file: str) -> Payload:
+    table = table_of(given, "payload", file)
+    only(table, {"size_m", "mesh"}, "payload.", file)
+    mesh, size = table.get("mesh"), table.get("size_m")
+    if mesh is not None and not isinstance(mesh, str):
+        raise bad(file, "payload.mesh", mesh, "a file name")
+    if size is None:
+        return Payload(None if mesh else DEFAULT_SIZE_M, mesh)
+    if not isinstance(size, list) or len(size) != 3:
+        raise bad(file, "payload.size_m", size, "three lengths [m]")
+    x, y, z = (number(value, "payload.size_m", file) for value in size)
+    if not min(x, y, z) > 0.0:
+        raise bad(file, "payload.size_m", size, "lengths above zero [m]")
+    return Payload((x, y, z), mesh)

@@ -1,0 +1,63 @@
+"""One comparison from a flight: solved with each method, measured, reported, drawn."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose.attitude import dcm_from_quaternion
+from fullpose.compare import compare, variants
+from fullpose.errors import MethodError
+from fullpose.resample import resample
+from fullpose.rig import Rig
+from fullpose.variant import Variant
+from fullpose_server.formats.compare_report import comparison_report
+from fullpose_server.pages.compare_page import compare_page
+from fullpose_server.planning.compare_length import check_length, check_samples
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]  # label, done, total
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The report, JSON-ready, and the page."""
+
+    report: dict[str, Any]
+    page: str
+
+
+def make_comparison(
+    name: str,
+    at: Array,
+    q: Array,
+    rig: Rig,
+    methods: Sequence[str | Variant],
+    start: Array | None = None,
+    rate_hz: float | None = None,
+    progress: Progress | None = None,
+) -> Comparison:
+    """Compare `methods` on the flight `name`: at (n,) [s], q (n, 4) w, x, y, z reference to body; start (4,) [rad].
+
+    With `rate_hz` the flight is first brought to that rate, as a plan is; else its own samples are solved.
+    Raises `fullpose.errors.SolverError`: `InputError` for more samples than `compare_length` allows,
+    `MethodError` where no method applies to the rig.
+    """
+    asked = variants(methods)
+    note = None
+    if rate_hz is None:
+        check_samples(at.size, len(asked))
+    else:
+        check_length(float(at[-1] - at[0]), rate_hz, len(asked))
+        flight = resample(at, q, rate_hz)
+        at, q, note = flight.time, flight.q, flight.note
+    attitude = dcm_from_quaternion(q)
+    rows = compare(at, attitude, rig, asked, start=start, clock=time.perf_counter, progress=progress)
+    if all(row.refusal is not None for row in rows):
+        reasons = "; ".join(f"{row.variant.label}: {row.refusal}" for row in rows)
+        raise MethodError(f"no method that is asked for applies to {rig.name}: {reasons}")
+    report = comparison_report(rows, rig, name, at, note)
+    return Comparison(report, compare_page(report, rows, rig, attitude))

@@ -1,0 +1,238 @@
+"""Making one plan: a stored flight, brought to the rig's rate, solved, given its leads, checked, and written."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose.attitude import dcm_from_quaternion, quaternion_from_dcm
+from fullpose.errors import MethodError
+from fullpose.lead import lead_in, lead_out
+from fullpose.plan import Plan, plan
+from fullpose.plan.verdict import margins
+from fullpose.registry import method_options
+from fullpose.resample import Resampled, continuous, resample
+from fullpose.rig import Rig
+from fullpose.solution import Solution
+from fullpose.solve import PLAN, solve
+from fullpose.verify import Violation, verify
+from fullpose_server.formats.plan_folder import make_plan, rig_hash, write_plan
+from fullpose_server.formats.report import make_report, margins_report, verdict_report, why_infeasible
+from fullpose_server.planning.plan_request import PlanRequest
+from fullpose_server.planning.remedy import find_remedy
+from fullpose_server.store.trajectories import read_arrays
+
+Progress = Callable[[str, int, int], None]  # phase, done, total
+Array = NDArray[np.float64]
+_NONE = np.empty((0, 4))
+
+
+def make_plan_folder(request: PlanRequest, progress: Progress) -> dict[str, Any]:
+    """Make the plan and write its folder; returns what the store keeps of it, JSON-ready.
+
+    Raises `fullpose.errors.SolverError`. An infeasible flight is no error: it is written, not flyable.
+    """
+    progress("resample", 0, 1)
+    time_s, q = read_arrays(request.trajectory)
+    flight = resample(np.array(time_s), np.array(q), request.rate_hz)
+    if flight.time.size < 2:
+        flight = _stand(flight, request.rate_hz)
+    made = _solve(request, flight.time - flight.time[0], flight.q, progress)
+    solution = made.solution
+    at, rig = solution.time, solution.rig
+    progress("verify", 0, 1)
+    report = make_report(solution, verify(at, solution.angles, rig, dcm_from_quaternion(made.q)))
+    report["rig"] = request.rig.name
+    if made.planned is not None:
+        report |= verdict_report(made.planned)
+    refusal = why_infeasible(report)
+    before, after = _NONE, _NONE
+    if refusal is None:
+        progress("leads", 0, 1)
+        try:
+            before, after = made.leads()
+        except MethodError as error:
+            refusal = f"the flight itself fits, its way in or out from rest does not: {error}"
+    angles = np.concatenate([before, solution.angles, after])
+    if refusal is None:
+        refusal = _whole(angles, request.rate_hz, rig, len(before))
+    remedy = made.remedy | {"sufficient": refusal is None} if made.remedy else None  # leads count, too
+    if refusal is None and rig_hash(rig) != rig_hash(request.rig):
+        refusal = f"it needs {made.remedy['statement']}: give the rig that, and plan again"
+    progress("write", 0, 1)
+    result = _write(request, flight, made, report, refusal, angles, (len(before), len(after)))
+    shown = margins_report(margins(at, solution.angles, rig), rig)
+    return result | {"verdict": made.verdict, "margins": shown, "remedy": remedy}
+
+
+def _stand(moment: Resampled, rate_hz: float) -> Resampled:
+    """A flight of one sample, held for one period: what is flown is a way from one sample to the next."""
+    return replace(
+        moment,
+        time=moment.time[0] + np.arange(2) / rate_hz,
+        q=moment.q.repeat(2, axis=0),
+        body_rate=np.zeros((2, 3)),
+        note=f"one sample at {rate_hz:g} Hz, held for one period",
+    )
+
+
+@dataclass(frozen=True)
+class _Made:
+    """A solution, what its verdict rests on, and how to get its leads (which may raise `MethodError`).
+
+    `q` (n, 4) is the attitude that was solved, `solution.rig` the rig; both are the remedy's where it has changed them.
+    """
+
+    solution: Solution
+    q: Array
+    verdict: str
+    leads: Callable[[], tuple[Array, Array]]
+    planned: Plan | None = None  # of the planner's solutions
+    remedy: dict[str, Any] = field(default_factory=dict)
+
+
+def _solve(request: PlanRequest, at: Array, q: Array, progress: Progress) -> _Made:
+    attitude = dcm_from_quaternion(q)
+    options = method_options(request.method, request.options)
+    start = None if request.start is None else np.array(request.start)
+
+    def tell(done: int, total: int) -> None:
+        progress("solve", done, total)
+
+    clock = time.perf_counter
+    if request.remedy is not None:
+        return _remedied(request, at, attitude, start, options, tell)
+    if request.method == PLAN:
+        # Asked directly: the planner keeps room for its own leads and says what its verdict rests on.
+        whole = plan(at, attitude, request.rig, start=start, options=options, clock=clock, progress=tell)
+        return _Made(whole.solution, q, whole.verdict.statement, lambda: _planned(whole), whole)
+    solution = solve(
+        at, attitude, request.rig, method=request.method, options=options, start=start, clock=clock, progress=tell
+    )
+    verdict = "Every sample checked against the limits by code apart from the solver; another method may find more."
+    return _Made(solution, q, verdict, lambda: _leads(solution, request.rate_hz))
+
+
+def _remedied(
+    request: PlanRequest,
+    at: Array,
+    attitude: Array,
+    start: Array | None,
+    options: Any,
+    tell: Callable[[int, int], None],
+) -> _Made:
+    """The flight, changed until it fits; solved by the planner whatever the method of the plan it is a remedy of."""
+    asked = request.remedy or {}
+    found = find_remedy(
+        asked["kind"],
+        at,
+        attitude,
+        request.rig,
+        frame=asked.get("frame"),
+        limit=asked.get("limit"),
+        start=start,
+        options=options,
+        progress=tell,
+    )
+    whole = found.remedy.plan
+    q = continuous(quaternion_from_dcm(found.remedy.attitude))
+    # A rig with a limit raised is still that rig by name: the plan's page compares the two.
+    solution = replace(whole.solution, rig=replace(whole.solution.rig, name=request.rig.name))
+    return _Made(solution, q, whole.verdict.statement, lambda: _planned(whole), whole, found.described)
+
+
+def _planned(whole: Plan) -> tuple[Array, Array]:
+    """The planner's own leads. Raises `MethodError` where there are none."""
+    if whole.lead_note:
+        raise MethodError(whole.lead_note)
+    return whole.lead_in, whole.lead_out
+
+
+def _write(
+    request: PlanRequest,
+    flight: Resampled,
+    made: _Made,
+    report: dict[str, Any],
+    refusal: str | None,
+    angles: Array,
+    leads: tuple[int, int],
+) -> dict[str, Any]:
+    n = len(angles)
+    solution = made.solution
+    inner = slice(leads[0], n - leads[1])
+    target, error = np.full((n, 4), math.nan), np.full(n, math.nan)
+    target[inner], error[inner] = made.q, solution.error
+    folder = make_plan(
+        plan_id=request.plan_id,
+        rig=solution.rig,
+        rate_hz=request.rate_hz,
+        angles=angles,
+        target=target,
+        error=error,
+        lead_in_samples=leads[0],
+        lead_out_samples=leads[1],
+        trajectory_sha256=request.trajectory_sha256,
+        method=request.method,
+        feasible=refusal is None,
+        name=request.name,
+        start_s=float(flight.time[0]),
+    )
+    write_plan(request.folder, folder)
+    return {
+        "report": report,
+        "feasible": report["feasible"],
+        "refusal": refusal,
+        "plan_hash": folder.info.plan_hash,
+        "samples": n,
+        "duration_s": folder.info.duration_s,
+        "lead_in_s": leads[0] / request.rate_hz,
+        "lead_out_s": leads[1] / request.rate_hz,
+        "resampling": flight.note,
+    }
+
+
+def _leads(solution: Solution, rate_hz: float) -> tuple[Array, Array]:
+    """Way in and out, (m, 4) [rad] each, joined to the flight's own rate and acceleration at its ends."""
+    dt = 1.0 / rate_hz
+    first = end_motion(solution.angles, dt)
+    last = end_motion(solution.angles[::-1], -dt)
+    return lead_in(solution.rig, *first, dt), lead_out(solution.rig, *last, dt)
+
+
+def end_motion(angles: Array, dt: float) -> tuple[Array, Array, Array]:
+    """Position, rate and acceleration (4,) at the first row of angles (n, 4), by one-sided differences of up to
+    fourth order; with -dt and the rows reversed, at the last."""
+    x = angles[:5]
+    rate_rows = {
+        1: [0.0],
+        2: [-1, 1],
+        3: [-1.5, 2, -0.5],
+        4: [-11 / 6, 3, -1.5, 1 / 3],
+        5: [-25 / 12, 4, -3, 4 / 3, -0.25],
+    }
+    acceleration_rows = {
+        1: [0.0],
+        2: [0.0, 0.0],
+        3: [1, -2, 1],
+        4: [2, -5, 4, -1],
+        5: [35 / 12, -26 / 3, 9.5, -14 / 3, 11 / 12],
+    }
+    rate = np.array(rate_rows[len(x)]) @ x / dt
+    acceleration = np.array(acceleration_rows[len(x)]) @ x / dt**2
+    return np.array(x[0]), rate, acceleration
+
+
+def _whole(angles: Array, rate_hz: float, rig: Rig, lead: int) -> str | None:
+    """Why the path, leads included, is not inside the limits; None where it is."""
+    at = (np.arange(len(angles)) - lead) / rate_hz
+    violations = verify(at, angles, rig, None).violations
+    return None if not violations else f"with its leads: {_sentence(violations[0])}"
+
+
+def _sentence(violation: Violation) -> str:
+    value = math.degrees(violation.value)
+    return f"at {violation.time:.3f} s the {violation.frame} frame exceeds its {violation.limit} limit ({value:.4g})"

@@ -1,0 +1,60 @@
+"""The planning process: reads requests from stdin, one JSON a line, and answers on stdout likewise.
+
+A process of its own, so that planning takes neither the server's event loop nor its GIL, and so that cancelling is
+killing it, which works at any moment. It ends when its stdin does, so it never outlives the server.
+"""
+
+import json
+import os
+import sys
+import time
+from typing import IO, Any
+
+from fullpose.errors import SolverError
+from fullpose_server.errors import ServerError, job_code
+from fullpose_server.planning.plan_request import PlanRequest
+
+REPORTS_S = 0.05  # shortest time between two reports of progress
+
+
+def main() -> None:
+    """Answer requests until stdin ends."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # whatever prints must not write into the protocol
+    os.nice(5)  # a rig's loop and the server come first
+    from fullpose_server.planning.make_plan import make_plan_folder  # Numba and SciPy: a second that start-up hides
+
+    _say(answers, {"ready": True})
+    for line in sys.stdin:
+        reporter = _Reporter(answers)
+        try:
+            result = make_plan_folder(PlanRequest.from_json(json.loads(line)), reporter.report)
+        except (SolverError, ServerError) as error:
+            _say(answers, {"failed": {"code": job_code(error), "message": str(error)}})
+        except Exception as error:  # noqa: BLE001 - the job failed, the process goes on; the server logs it
+            message = f"{type(error).__name__}: {error}"
+            _say(answers, {"failed": {"code": "internal", "message": message}})
+        else:
+            _say(answers, {"done": result})
+
+
+class _Reporter:
+    def __init__(self, answers: IO[str]) -> None:
+        self._answers = answers
+        self._phase = ""
+        self._next = 0.0
+
+    def report(self, phase: str, done: int, total: int) -> None:
+        now = time.monotonic()
+        if phase != self._phase or now >= self._next:
+            self._phase, self._next = phase, now + REPORTS_S
+            _say(self._answers, {"progress": [phase, done, total]})
+
+
+def _say(answers: IO[str], message: dict[str, Any]) -> None:
+    answers.write(json.dumps(message) + "\n")
+    answers.flush()
+
+
+if __name__ == "__main__":
+    main()

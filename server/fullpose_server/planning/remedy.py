@@ -1,0 +1,106 @@
+"""Remedies by name: what would make a flight fit a rig, and in words what was changed. Degrees and seconds."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose.plan import PlanOptions
+from fullpose.plan.remedies import NOTHING, Remedy, offset, relax, slow_down
+from fullpose.rig import FRAMES, LIMITS, Rig
+from fullpose_server.errors import NoRemedyError, ServerError
+from fullpose_server.formats.report import UNITS
+from fullpose_server.planning.plan_request import check_frame
+
+RemedyKind = Literal["slow_down", "heading_offset", "mounting_offset", "relax"]
+KINDS: tuple[str, ...] = get_args(RemedyKind)
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Found:
+    """The remedy that is taken, and the others that would do as well (`relax` only), in words."""
+
+    remedy: Remedy
+    described: dict[str, Any]
+
+
+def find_remedy(
+    kind: str,
+    time: Array,
+    attitude: Array,
+    rig: Rig,
+    *,
+    frame: str | None = None,
+    limit: str | None = None,
+    start: Array | None = None,
+    options: PlanOptions | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Found:
+    """Search the remedy of that kind for time (n,) [s], attitude (n, 3, 3); with `relax`, of one frame or limit alone.
+
+    `described`: kind, what, value, unit, statement, sufficient, alternatives. A remedy that does not suffice is
+    returned too, but for `relax`, which raises `NoRemedyError`. A flight that fits as it is is returned so, of every
+    kind. Raises `SolverError`, `ServerError` for names that are none.
+    """
+    check_kind(kind, frame, limit, rig)
+    match kind:
+        case "slow_down":
+            found = [slow_down(time, attitude, rig, start, options, progress)]
+        case "heading_offset" | "mounting_offset":
+            which = kind.removesuffix("_offset")
+            found = [offset(time, attitude, rig, which, start, options, progress)]
+        case _:
+            found = relax(time, attitude, rig, frame, limit, start, options, progress)
+    if not found:
+        where = " ".join(filter(None, (frame, limit))) or "single"
+        raise NoRemedyError(f"no {where} limit, raised, makes this flight fit {rig.name}: slow it down or turn it")
+    first, *others = (_described(kind, remedy, rig) for remedy in found)
+    sufficient = found[0].plan.ready
+    return Found(found[0], {"kind": kind, **first, "sufficient": sufficient, "alternatives": others})
+
+
+def _described(kind: str, remedy: Remedy, rig: Rig) -> dict[str, Any]:
+    """what, value, unit, statement."""
+    value = remedy.value
+    if kind == "slow_down":
+        said = "flown as it is" if value == 1.0 else f"flown {value:.4g} times as slow"
+        return {"what": remedy.what, "value": value, "unit": "times", "statement": said}
+    angle = math.degrees(value)
+    if remedy.what == NOTHING:
+        return {"what": NOTHING, "value": 0.0, "unit": "deg", "statement": "flown as it is: no limit need be raised"}
+    if kind != "relax":
+        whole = "the whole flight" if kind == "heading_offset" else "the payload in its mount"
+        said = f"{whole} turned by {angle:.4g} deg of {remedy.what}" if value else f"{whole} as it is"
+        return {"what": remedy.what, "value": angle, "unit": "deg", "statement": said}
+    frame, limit = remedy.what.split()
+    index = FRAMES.index(frame)
+    before, after = rig.frames[index], remedy.rig.frames[index]
+    if limit == "position":
+        old, new = (_range(limits.min, limits.max) for limits in (before, after))
+        said = f"the {frame} frame's range widened from {old} to {new} deg"
+    else:
+        held = math.degrees(before.max_rate if limit == "rate" else before.max_acceleration)
+        said = f"the {frame} frame's {limit} limit raised from {held:.4g} to {angle:.4g} {UNITS[limit]}"
+    return {"what": remedy.what, "value": angle, "unit": UNITS[limit], "statement": said}
+
+
+def _range(low: float, high: float) -> str:
+    return f"{math.degrees(low):.4g}..{math.degrees(high):.4g}"
+
+
+def check_kind(kind: str, frame: str | None, limit: str | None, rig: Rig) -> None:
+    """Raise `ServerError` for a kind that is none, or a frame or limit that is none or that the kind has no use for.
+
+    `InputError` for a frame that the rig has not.
+    """
+    if kind not in KINDS:
+        raise ServerError(f"remedy {kind!r}: expected one of {', '.join(KINDS)}")
+    if kind != "relax" and (frame is not None or limit is not None):
+        raise ServerError(f"remedy {kind} has no frame and no limit: they are for relax")
+    check_frame(frame, rig)
+    if limit is not None and limit not in LIMITS:
+        raise ServerError(f"limit {limit!r}: expected one of {', '.join(LIMITS)}")

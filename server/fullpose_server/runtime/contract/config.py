@@ -1,0 +1,123 @@
+"""What a rig process is told at its start: one JSON file, one frozen dataclass."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from fullpose.rig import FRAMES, FrameLimits, Geometry, Rig
+from fullpose_server.operating import (
+    ConfigError,
+    GuardConfig,
+    MotionConfig,
+    OperatingConfig,
+    Tolerance,
+    check_not_negative,
+    check_positive,
+)
+
+# What rig files say too is in `fullpose_server.operating`, below the store; the loop finds all it needs here.
+__all__ = [
+    "GuardConfig",
+    "LiveConfig",
+    "MotionConfig",
+    "OperatingConfig",
+    "RigConfig",
+    "Tolerance",
+    "decode",
+    "encode",
+    "rig_from_dict",
+    "rig_to_dict",
+]
+_LIMIT_KEYS = ("min", "max", "max_rate", "max_acceleration", "weight", "home")
+
+
+@dataclass(frozen=True)
+class LiveConfig:
+    """The live source: where its UDP port listens (None: no port), and how jitter is bridged."""
+
+    udp_port: int | None = None
+    udp_host: str = "127.0.0.1"
+    delay_ms: float = 5.0  # the target is the source's attitude this long ago: jitter up to it is interpolated
+    extrapolate_ms: float = 50.0
+
+    def __post_init__(self) -> None:
+        if self.udp_port is not None and not 1 <= self.udp_port <= 65535:
+            raise ConfigError("udp_port", self.udp_port, "1 to 65535, or none for no port")
+        if not self.udp_host:
+            raise ConfigError("udp_host", self.udp_host, "an address of this machine")
+        check_not_negative(self, "delay_ms")
+        check_positive(self, "extrapolate_ms")
+
+
+@dataclass(frozen=True)
+class RigConfig(OperatingConfig):
+    """Everything a rig process needs: how the rig is operated (see `OperatingConfig`), and this. Paths are absolute."""
+
+    name: str
+    rig: Rig
+    directory: Path  # of this rig's socket, lock and notes
+    runs: Path  # where records go
+    rate_hz: float = 1000.0
+    exit_idle_s: float = 120.0  # without a server and at rest, the process ends by itself
+    live: LiveConfig = LiveConfig()
+    after_loss: str | None = None  # why an earlier process of this rig died
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise ConfigError("name", self.name, "the rig's name")
+        if not 100.0 <= self.rate_hz <= 4000.0:
+            raise ConfigError("rate_hz", self.rate_hz, "100 to 4000")
+        check_positive(self, "exit_idle_s")
+        super().__post_init__()
+
+
+def rig_to_dict(rig: Rig) -> dict[str, Any]:
+    """`rig` as JSON can hold it [rad]: a limit that is not there is left out."""
+    frames = {
+        name: {key: value for key in _LIMIT_KEYS if math.isfinite(value := getattr(frame, key))}
+        for name, frame in zip(FRAMES, rig.frames, strict=True)
+    }
+    return {"name": rig.name, "geometry": str(rig.geometry), "frames": frames}
+
+
+def rig_from_dict(raw: dict[str, Any]) -> Rig:
+    """The inverse of `rig_to_dict`. Raises KeyError, ValueError or `RigError` on what is no rig."""
+    base, outer, middle, inner = (FrameLimits(**raw["frames"][name]) for name in FRAMES)
+    return Rig(raw["name"], Geometry(raw["geometry"]), (base, outer, middle, inner))
+
+
+def encode(config: RigConfig) -> bytes:
+    """`config` as JSON."""
+
+    def hook(value: Any) -> Any:
+        if isinstance(value, Path):
+            return str(value)
+        raise NotImplementedError(type(value))
+
+    raw = {name: getattr(config, name) for name in config.__dataclass_fields__}
+    return msgspec.json.format(msgspec.json.encode(raw | {"rig": rig_to_dict(config.rig)}, enc_hook=hook))
+
+
+def decode(data: bytes) -> RigConfig:
+    """The inverse of `encode`. Raises ValueError with what is wrong."""
+    raw = msgspec.json.decode(data)
+    raw["rig"] = rig_from_dict(raw["rig"])
+
+    def hook(kind: type, value: Any) -> Any:
+        if kind is Path:
+            return Path(value)
+        raise NotImplementedError(kind)
+
+    kept = raw.pop("rig")
+    fields = {}
+    for name, field_type in _types().items():
+        if name in raw:
+            fields[name] = msgspec.convert(raw[name], field_type, dec_hook=hook)
+    return RigConfig(rig=kept, **fields)
+
+
+def _types() -> dict[str, Any]:
+    return {name: kind.type for name, kind in RigConfig.__dataclass_fields__.items() if name != "rig"}

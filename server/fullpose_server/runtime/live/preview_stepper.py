@@ -1,0 +1,159 @@
+"""A live flight with `preview`: the exact step in the loop, its way ahead planned in a process of its own.
+
+The loop never waits for the planner. One job is with it at a time; a way that comes late, or never, costs room on the
+self-motion and nothing else, and `way_age_s` says so. mathematics, section 9.
+"""
+
+import pickle
+import socket
+import subprocess
+import sys
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose.errors import SolverError
+from fullpose.plan import Ahead, PreviewOptions, PreviewStepper, Replan
+from fullpose.registry import method_options
+from fullpose.rig import Rig
+from fullpose_server.runtime.live.planner_process import MESSAGE
+from fullpose_server.runtime.live.steppers import Flight, LiveError, LiveSettings
+from fullpose_server.runtime.motion.path_player import attitude_of
+
+Array = NDArray[np.float64]
+FARTHEST_S = 2.0  # of the future
+_READY_S = 60.0  # with no kernel in the cache, compiling takes most of it
+_LEVEL = (1.0, 0.0, 0.0, 0.0)
+
+
+class PreviewStep:
+    """One rig's live preview."""
+
+    def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
+        self._rig, self._dt = rig, dt
+        try:
+            self._options: PreviewOptions = method_options(settings.method, settings.options) or PreviewOptions()
+            self._restart(rig.home.copy())  # writable, as in flight: to Numba a type of its own
+        except SolverError as cause:
+            raise LiveError(str(cause)) from cause
+        self.preview_s = self._options.preview_s
+        if self.preview_s > FARTHEST_S:
+            raise LiveError(f"option preview_s = {self.preview_s:g}: expected {FARTHEST_S:g} s at most")
+        # Compiled here, at rest, and not in the first live tick; in the planner too, by the job.
+        self.announce(0.1, _LEVEL)
+        self._flight.step(np.array(_LEVEL))
+        self._planner = Planner(self._flight.stepper.replan())
+        self._flight.stepper.adopt(self._planner.first)
+        self._flight.step(np.array(_LEVEL))
+
+    def begin(self, pose: Array) -> None:
+        """From rest at `pose` (4,) [rad]."""
+        self._planner.abandon()
+        self._restart(pose)
+
+    def _restart(self, pose: Array) -> None:
+        self._flight = Flight(self._rig, self._dt, pose, self._stepper)
+        self._heard = 0.0  # [s] of this flight, when the planner was last heard
+
+    def _stepper(self, pose: Array, attitude: Array) -> PreviewStepper:
+        return PreviewStepper(self._rig, self._options, pose, attitude)
+
+    def follow(self, q: Array) -> tuple[Array, int]:
+        """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
+        flight, planner = self._flight, self._planner
+        way = planner.answer()
+        if way is not None and flight.stepper.adopt(way):
+            self._heard = flight.now
+        found = flight.step(q)
+        if flight.stepper.due and not planner.busy:
+            planner.ask(flight.stepper.replan())
+        return found
+
+    def announce(self, ahead_s: float, q: tuple[float, float, float, float]) -> None:
+        """The attitude q that is to be flown `ahead_s` [s] after the tick to come."""
+        C = np.empty((1, 3, 3))
+        attitude_of(np.array(q), C[0])
+        self._flight.stepper.offer(np.array([self._flight.now + ahead_s]), C)
+
+    def void(self) -> None:
+        """What was announced is not to come: the source began anew."""
+        self._flight.stepper.void()
+
+    @property
+    def way_age_s(self) -> float:
+        """How long ago the planner was last heard [s]."""
+        return self._flight.now - self._heard
+
+    def close(self) -> None:
+        """End the planner."""
+        self._planner.close()
+
+
+class Planner:
+    """The planner's process, and the one job that may be with it. Raises `LiveError` where it does not start."""
+
+    def __init__(self, first: Replan) -> None:
+        """Blocks until the planner has answered the job `first`."""
+        # Messages, whole or not at all, so that nothing is ever half read in the loop.
+        self._link, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with other:
+            for option in (socket.SO_SNDBUF, socket.SO_RCVBUF):
+                self._link.setsockopt(socket.SOL_SOCKET, option, MESSAGE)
+                other.setsockopt(socket.SOL_SOCKET, option, MESSAGE)
+            command = [
+                sys.executable,
+                "-m",
+                "fullpose_server.runtime.live.planner_process",
+                "--fd",
+                str(other.fileno()),
+            ]
+            self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=(other.fileno(),))
+        self.busy = False
+        self._abandoned = False
+        self._link.settimeout(_READY_S)
+        try:
+            self._link.sendall(pickle.dumps(first, protocol=5))
+            data = self._link.recv(MESSAGE)
+        except OSError as cause:
+            self.close()
+            raise LiveError(f"the preview's planner does not answer: {cause}") from cause
+        if not data:
+            self.close()
+            raise LiveError("the preview's planner ended at its start: see the rig's log")
+        self.first: Ahead = pickle.loads(data)
+        self._link.setblocking(False)
+
+    def ask(self, job: Replan) -> None:
+        """Give it a job. Where it cannot be given (it ended), it stays unasked, and the way grows old."""
+        try:
+            self._link.sendall(pickle.dumps(job, protocol=5))
+        except OSError:
+            return
+        self.busy, self._abandoned = True, False
+
+    def answer(self) -> Ahead | None:
+        """The way that has come since, if one has, and if it was not abandoned."""
+        if not self.busy:
+            return None
+        try:
+            data = self._link.recv(MESSAGE)
+        except OSError:
+            return None
+        if not data:
+            return None  # it ended: still busy, for ever
+        self.busy = False
+        way: Ahead = pickle.loads(data)
+        return None if self._abandoned else way
+
+    def abandon(self) -> None:
+        """The job that is with it, if any, belongs to a flight that is over."""
+        self._abandoned = True
+
+    def close(self) -> None:
+        """End it."""
+        self._link.close()
+        try:
+            self._process.wait(1.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()

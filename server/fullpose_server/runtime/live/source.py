@@ -1,0 +1,229 @@
+"""Following a live source: samples in by UDP and by the local socket, one exact step a tick, one reply a sample.
+
+The step is the solver's, on the attitude that the buffer gives for the tick; it starts from the pose and attitude the
+rig has, so that a source that begins elsewhere is approached inside the limits. Where samples stop, the attitude is
+extrapolated briefly, then the source counts as lost and the session stops the rig.
+"""
+
+import math
+import os
+import socket
+import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose.rig import Rig
+from fullpose_server.runtime.contract.config import LiveConfig
+from fullpose_server.runtime.contract.messages import LiveHealth
+from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.live.buffer import LiveBuffer
+from fullpose_server.runtime.live.packets import (
+    SAMPLE_SIZE,
+    LiveReply,
+    LiveSample,
+    LiveStatus,
+    decode_sample,
+    encode_reply,
+)
+from fullpose_server.runtime.live.steppers import LiveSettings, LiveStep, live_step
+from fullpose_server.runtime.motion.path_player import attitude_error
+
+Array = NDArray[np.float64]
+_PER_TICK = 16
+_RATE_OVER_S = 1.0
+_SOURCE_SILENT_S = 0.5  # then another may be followed in its place
+_DEG = 180.0 / math.pi
+
+
+class LiveSource:
+    """One rig's live source. `poll` every tick; `tick` while the session is live."""
+
+    def __init__(self, rig: Rig, config: LiveConfig, place: Place, dt: float) -> None:
+        self._rig = rig
+        self._config = config
+        self._dt = dt
+        self._buffer = LiveBuffer(config.delay_ms / 1e3)
+        self._step: LiveStep | None = None
+        self._settings = LiveSettings()
+        self._sockets: list[socket.socket] = []
+        self._waiting: list[tuple[LiveSample, bool, float, socket.socket, Any]] = []
+        self._now = 0.0
+        self._begun = 0.0
+        self._following = False
+        self._waited = True
+        self.stale = self.limited = False
+        self.acquired = False  # the source's attitude was reached once
+        self.bad = 0
+        self.strangers = 0  # samples of another source than the one that is followed
+        self._source: tuple[int, Any] | None = None  # socket and sender that is followed
+        self._source_at = 0.0  # [s] when it was heard
+        self.last_age_ms = 0.0
+        self.rate_hz = 0.0
+        self._rated = (0.0, 0)  # when, and samples by then
+        self._open(place)
+
+    def _open(self, place: Place) -> None:
+        local = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
+        with place.socket_address("live.sock") as address:
+            (place.directory / "live.sock").unlink(missing_ok=True)
+            local.bind(address)
+        os.chmod(place.directory / "live.sock", 0o600)  # noqa: PTH101
+        self._sockets.append(local)
+        if self._config.udp_port is not None:
+            udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
+            udp.bind((self._config.udp_host, self._config.udp_port))
+            self._sockets.append(udp)
+        for each in self._sockets:
+            each.setblocking(False)
+
+    def close(self) -> None:
+        """Close the sockets, end the planner."""
+        self.unload()
+        for each in self._sockets:
+            each.close()
+
+    def prepare(self, settings: LiveSettings) -> None:
+        """Make ready for `settings`, at rest: may compile. Raises `LiveError`, and the earlier settings stand."""
+        step = live_step(self._rig, settings, self._dt)
+        self.unload()
+        self._step = step
+        self._settings = settings
+        self._buffer = LiveBuffer(self._config.delay_ms / 1e3 + step.preview_s)
+
+    def unload(self) -> None:
+        """Forget the settings: a planner ends."""
+        if self._step is not None:
+            self._step.close()
+            self._step = None
+
+    def begin(self, pose: Array, now: float) -> None:
+        """Follow from rest at `pose` (4,) [rad]; what the source sent before counts no more."""
+        assert self._step is not None
+        self._buffer.reset()
+        self._step.begin(pose)
+        self._begun = now
+        self._following = True
+        self.acquired = False
+        self.stale = self.limited = False
+        self._source = None
+        self.strangers = 0
+
+    def end(self) -> None:
+        """The session is no longer live."""
+        if self._following:
+            self._following = self.stale = self.limited = False
+
+    def poll(self, now: float) -> None:
+        """Take the samples that have come."""
+        self._now = now
+        if now - self._rated[0] > _RATE_OVER_S:
+            self.rate_hz = max(0, self._buffer.accepted - self._rated[1]) / (now - self._rated[0])
+            self._rated = (now, self._buffer.accepted)
+        for each in self._sockets:
+            for _ in range(_PER_TICK):
+                try:
+                    data, sender = each.recvfrom(SAMPLE_SIZE + 1)
+                except OSError:
+                    break
+                sample = decode_sample(data)
+                if sample is None:
+                    self.bad += 1
+                    continue
+                used = self._following and self._is_followed(each, sender, now) and self._take(sample, now)
+                self._waiting.append((sample, used, time.monotonic(), each, sender))
+
+    def _is_followed(self, via: socket.socket, sender: Any, now: float) -> bool:
+        """One source a rig: the first to be heard, until it has been silent for a while."""
+        source = (via.fileno(), sender)
+        if source != self._source:
+            if self._source is not None and now - self._source_at < _SOURCE_SILENT_S:
+                self.strangers += 1
+                return False
+            self._source = source
+        self._source_at = now
+        return True
+
+    def _take(self, sample: LiveSample, now: float) -> bool:
+        assert self._step is not None
+        steps = self._buffer.steps
+        if not self._buffer.add(sample, now):
+            return False
+        if self._buffer.steps != steps:
+            self._step.void()
+        ahead = -self._buffer.age(now)
+        if ahead > 0.0:
+            self._step.announce(ahead, sample.quaternion)
+        return True
+
+    def tick(self, x1: Array, v1: Array, x: Array, q: Array) -> bool:  # noqa: ARG002
+        """Fill the next command x and the attitude q it follows; False where the source is lost."""
+        assert self._step is not None
+        age = self._buffer.age(self._now)
+        if math.isinf(age):
+            # Nothing yet: stand, for a while.
+            self.last_age_ms = (self._now - self._begun) * 1e3
+            x[:] = x1
+            self._waited = True
+            return self._now - self._begun <= self._settings.first_sample_s
+        self._waited = False
+        self.last_age_ms = age * 1e3
+        self.stale = age > 0.0
+        if age * 1e3 > self._config.extrapolate_ms:
+            return False
+        self._buffer.at(self._now, q)
+        angles, code = self._step.follow(q)
+        self.limited = code != 0
+        self.acquired = self.acquired or not self.limited
+        x[:] = angles
+        return True
+
+    def reply(self, x: Array, error_deg: float, margin: float, now: float) -> None:
+        """Answer the samples taken in this tick: x (4,) [rad] was commanded."""
+        for sample, used, arrived, via, sender in self._waiting:
+            status = LiveStatus.IDLE if not self._following else LiveStatus.FOLLOWED
+            if self._following and not used:
+                status = LiveStatus.DROPPED
+            elif self.limited:
+                status |= LiveStatus.LIMITED
+            lag = attitude_error(self._rig.axes, x, np.array(sample.quaternion)) * _DEG
+            angles = tuple((x * _DEG).tolist())
+            latency = (now - arrived) * 1e6
+            reply = LiveReply(int(status), sample.sequence, sample.time_s, angles, error_deg, lag, margin, latency)
+            if sender:
+                try:
+                    via.sendto(encode_reply(reply), sender)
+                except OSError:
+                    continue  # who does not read its replies does not get them
+        self._waiting.clear()
+
+    @property
+    def heard(self) -> bool:
+        """Whether the last tick had a sample to follow, however old."""
+        return not self._waited
+
+    @property
+    def way_age_s(self) -> float:
+        """How old the planner's last word is [s]; nan where none plans."""
+        return math.nan if self._step is None else self._step.way_age_s
+
+    def health(self) -> LiveHealth | None:
+        """What an operator wants to know of it; None where no live source is loaded."""
+        if self._step is None:
+            return None
+        counts = self.counts
+        heard = self._following and not self._waited
+        way = self.way_age_s * 1e3
+        return LiveHealth(
+            rate_hz=self.rate_hz,
+            age_ms=self.last_age_ms if heard else None,
+            way_age_ms=None if math.isnan(way) or not heard else way,
+            **counts,
+        )
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Samples accepted, dropped (late or doubled), bad (no sample at all), and steps of the source's clock."""
+        b = self._buffer
+        return {"accepted": b.accepted, "dropped": b.dropped, "bad": self.bad, "clock_steps": b.steps}

@@ -1,0 +1,141 @@
+"""From a command's words to what the loop can do: all that can fail is read and checked before anything changes."""
+
+import math
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from fullpose.rig import FRAMES, Rig
+from fullpose_server.formats.plan_folder import PlanFolder, PlanFolderError, read_plan, rig_hash
+from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.live.steppers import LiveSettings
+from fullpose_server.runtime.motion.generator import Motion
+from fullpose_server.runtime.motion.point_to_point import MoveError, PointMove
+from fullpose_server.session.errors import SessionError
+from fullpose_server.session.machine import Binding
+from fullpose_server.session.states import Command
+
+
+class OrderError(SessionError):
+    """A command whose arguments cannot be done. `code` and message say which and why."""
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+@dataclass(frozen=True)
+class Load:
+    """What `load` brings: a plan or a live source's settings, with their binding."""
+
+    binding: Binding
+    plan: PlanFolder | None
+    live: LiveSettings | None
+
+
+def load_of(args: dict[str, Any], config: RigConfig) -> Load:
+    """The plan of `args["plan_folder"]`, or the live settings of `args["live"]`. Raises `OrderError`."""
+    if "live" in args:
+        try:
+            live = msgspec.convert(args["live"], LiveSettings)
+        except (msgspec.ValidationError, ValueError) as cause:
+            raise OrderError("bad_arguments", f"live: {cause}") from cause
+        binding = Binding("live", live.hash, config.rig.name, rig_hash(config.rig), live=True)
+        return Load(binding, None, live)
+    folder = args.get("plan_folder")
+    if not isinstance(folder, str):
+        raise OrderError("bad_arguments", "load needs plan_folder (a path), or live (settings)")
+    try:
+        plan = read_plan(Path(folder))
+    except PlanFolderError as cause:
+        raise OrderError("bad_plan", str(cause)) from cause
+    _check_path(plan, config.rig)
+    info = plan.info
+    return Load(Binding(info.plan_id, info.plan_hash, info.rig, info.rig_hash), plan, None)
+
+
+def _check_path(plan: PlanFolder, rig: Rig) -> None:
+    """A path is finite, and entered and left at rest: no step there is faster than one tick of acceleration."""
+    if not np.isfinite(plan.angles).all():
+        raise OrderError("bad_plan", "the plan's angles are not all finite")
+    rate = plan.info.rate_hz
+    for where, step in (("begin", plan.angles[1] - plan.angles[0]), ("end", plan.angles[-1] - plan.angles[-2])):
+        allowed = np.where(np.isfinite(rig.max_acceleration), rig.max_acceleration, math.inf) / rate
+        fast = np.abs(step) * rate > allowed * (1.0 + 1e-6)
+        if fast.any():
+            name = FRAMES[int(np.argmax(fast))]
+            raise OrderError("bad_plan", f"the plan does not {where} at rest ({name} frame): it needs a lead to rest")
+
+
+def asked_pair(args: dict[str, Any], bound: Binding | None) -> Binding | None:
+    """The pair that the caller of `arm` names; None where it names none."""
+    if bound is None or not {"plan_hash", "rig_hash"} & set(args):
+        return None
+    return Binding(
+        bound.plan_id,
+        str(args.get("plan_hash", bound.plan_hash)),
+        bound.rig,
+        str(args.get("rig_hash", bound.rig_hash)),
+        bound.live,
+    )
+
+
+def check_record(runs: Path, min_free_mb: float, recorder_silent_s: float) -> None:
+    """Raise `OrderError` where a run could not be recorded."""
+    if recorder_silent_s > 2.0:
+        raise OrderError(
+            "no_record", "the recorder does not run: it is started anew while the rig is at rest, try again"
+        )
+    try:
+        runs.mkdir(parents=True, exist_ok=True)
+        free = shutil.disk_usage(runs).free / 1e6
+    except OSError as cause:
+        raise OrderError("no_record", f"{runs} cannot be written: {cause.strerror}") from cause
+    if free < min_free_mb:
+        raise OrderError("disk_full", f"{free:.0f} MB free in {runs}: arming needs {min_free_mb:.0f} MB for the record")
+
+
+def check_inside(rig: Rig, motion: Motion) -> None:
+    """Raise `OrderError` where a frame stands outside its range: a step method begins inside."""
+    for name, value, low, high in zip(FRAMES, motion.x1, rig.position_min, rig.position_max, strict=True):
+        if not low <= value <= high:
+            low_deg, high_deg, deg = (math.degrees(v) for v in (low, high, value))
+            text = f"{name} stands at {deg:.6g} deg, outside {low_deg:.6g} to {high_deg:.6g} deg: move it inside first"
+            raise OrderError("outside_limits", text)
+
+
+def move_of(command: Command, args: dict[str, Any], rig: Rig, motion: Motion) -> PointMove:
+    """The move that move, home, jog or start asks for. Raises `OrderError`."""
+    try:
+        if command is Command.START:
+            return motion.plan_start()
+        return motion.plan_move(_target(command, args, rig, motion))
+    except MoveError as cause:
+        raise OrderError("outside_limits", str(cause)) from cause
+
+
+def _target(command: Command, args: dict[str, Any], rig: Rig, motion: Motion) -> np.ndarray[Any, np.dtype[np.float64]]:
+    if command is Command.HOME:
+        # The nearest turn of a frame that turns without end: home is a pose, not a count of turns.
+        turns = np.where(np.isinf(rig.position_max), np.round((motion.x1 - rig.home) / math.tau), 0.0)
+        return np.asarray(rig.home + turns * math.tau)
+    if command is Command.MOVE:
+        return np.asarray(np.radians(_four(args, "target_deg")))
+    if "frame" in args:
+        if args["frame"] not in FRAMES or not isinstance(args.get("step_deg"), int | float):
+            raise OrderError("bad_arguments", f"jog needs frame (one of {', '.join(FRAMES)}) and step_deg (a number)")
+        step = np.zeros(4)
+        step[FRAMES.index(args["frame"])] = math.radians(args["step_deg"])
+        return np.asarray(motion.x1 + step)
+    return np.asarray(motion.x1 + np.radians(_four(args, "step_deg")))
+
+
+def _four(args: dict[str, Any], name: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    value = args.get(name)
+    if not isinstance(value, list) or len(value) != 4 or not all(isinstance(v, int | float) for v in value):
+        raise OrderError("bad_arguments", f"{name} must be four numbers [deg], base first")
+    return np.array(value, float)

@@ -1,0 +1,65 @@
+"""Compile (or load from the cache) every kernel of the loop before the loop begins."""
+
+import math
+
+import numpy as np
+
+from fullpose_server.formats.plan_folder import make_plan
+from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.live.buffer import LiveBuffer
+from fullpose_server.runtime.live.packets import LiveSample
+from fullpose_server.runtime.motion.generator import Motion
+from fullpose_server.runtime.motion.limit_guard import Guard
+from fullpose_server.session.states import Event
+
+
+def kernels(config: RigConfig) -> None:
+    """Fly a path of a few samples and a live source's buffer, and throw them away. What is left is the live step's.
+
+    A kernel that is first called in mid-flight would be compiled there, on a fresh machine for seconds.
+    """
+    _path(config)
+    buffer = LiveBuffer(0.0)
+    q = np.empty(4)
+    for k in range(2):
+        buffer.add(LiveSample(k, 0.1 * k, (1.0, 0.0, 0.0, 0.0), None), 0.1 * k)
+    for now in (0.05, 0.15):  # interpolated, extrapolated
+        buffer.at(now, q)
+
+
+def _path(config: RigConfig) -> None:
+    rig = config.rig
+    n = 8
+    angles = np.tile(rig.home, (n, 1))
+    target = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+    plan = make_plan(
+        plan_id="warm",
+        rig=rig,
+        rate_hz=config.rate_hz,
+        angles=angles,
+        target=target,
+        error=np.zeros(n),
+        lead_in_samples=1,
+        lead_out_samples=1,
+        trajectory_sha256="",
+        method="",
+        feasible=True,
+    )
+    motion = Motion(rig, config.motion, config.rate_hz)
+    guard = Guard(rig, config.guard, 1.0 / config.rate_hz)
+    motion.rest_at(rig.home)
+    motion.load(plan)
+    motion.go(motion.plan_start(), Event.AT_START)
+    motion.tick()
+    motion.run()
+    for wanted in (True, False):
+        motion.hold(wanted)
+        for _ in range(4):
+            motion.tick()
+            motion.solve_error(rig.axes)
+            guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)
+            motion.commit()
+            guard.measured(motion.x, motion.x1, motion.q1)
+    motion.v1[:] = math.radians(1.0)
+    motion.brake(fastest=True)
+    motion.tick()

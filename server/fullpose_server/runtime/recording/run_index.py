@@ -1,0 +1,270 @@
+"""Recorded runs as the outside sees them: a summary of each file, kept beside it, and tables for export."""
+
+import contextlib
+import json
+import shutil
+import time
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pacsv
+import pyarrow.parquet as pq
+
+from fullpose.rig import FRAMES
+from fullpose_server.errors import FileError, NotFoundError
+from fullpose_server.runtime.contract.telemetry import LEAD, SAMPLE, Samples
+from fullpose_server.runtime.recording.mcap_reader import (
+    RecordError,
+    is_whole,
+    read_record,
+    read_samples,
+    repair,
+    run_of,
+)
+from fullpose_server.session.states import STATES, State
+
+_UNITS = {
+    "demand": "deg",
+    "demand_rate": "deg_s",
+    "demand_acceleration": "deg_s2",
+    "measured": "deg",
+    "measured_rate": "deg_s",
+    "following_error_deg": "deg",
+}
+_WRITTEN_S = 5.0  # a record that has not grown for so long is no longer written: its recorder was cut off
+_QUATERNION = ("w", "x", "y", "z")
+
+
+@dataclass(frozen=True)
+class RunSummary:
+    """What a record says, errors over the flight itself: running or held, leads left out."""
+
+    id: str
+    rig: str
+    incident: str | None  # code of the alarm that had it kept while no run was recorded; None: a run
+    error: str | None  # why it cannot be read; then nothing but its name is known
+    plan_id: str | None
+    plan_hash: str | None
+    who: str
+    started: float | None  # seconds since 1970, of the first sample
+    ended: float | None
+    samples: int | None  # None, as all that follows from them, while they are being written
+    lost_samples: int | None  # sequence numbers that are missing, from the run's beginning to its end
+    bytes: int
+    complete: bool  # False while it is written, where the recorder was cut off, or a part is damaged
+    max_solve_error_deg: float | None
+    max_tracking_error_deg: float | None
+    max_lateness_us: float | None
+
+
+class RunFiles:
+    """The records in one folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def all(self, rig: str | None = None) -> list[RunSummary]:
+        """Newest first; one that cannot be read says why. One that has only just begun may be left out."""
+        found = []
+        for path in sorted(self.folder.glob("*.mcap"), reverse=True):
+            # One that is gone since we looked for it is no run any more.
+            with contextlib.suppress(FileNotFoundError):
+                try:
+                    found.append(self._summary(path))
+                except (RecordError, OSError) as error:
+                    if not _is_fresh(path):
+                        found.append(_unreadable(path, error))
+        return [run for run in found if rig is None or run.rig == rig]
+
+    def get(self, run: str) -> RunSummary:
+        """One run. Raises `NotFoundError`, or `FileError` for a file that is no record."""
+        try:
+            return self._summary(self.path(run))
+        except RecordError as error:
+            raise FileError(f"{run}.mcap", f"a record ({error.why})") from None
+
+    def path(self, run: str) -> Path:
+        """The record's file. Raises `NotFoundError`."""
+        path = self.folder / f"{run}.mcap"
+        if Path(run).name != run or not path.is_file():
+            raise NotFoundError("run", run)
+        return path
+
+    def _summary(self, path: Path) -> RunSummary:
+        """Of the file: read whole once, when nobody writes to it any more, and kept beside it."""
+        kept = path.with_suffix(".json")
+        size = path.stat().st_size
+        try:
+            summary = RunSummary(**json.loads(kept.read_text(encoding="utf-8")))
+            if summary.bytes == size:
+                return summary
+        except (OSError, ValueError, TypeError):
+            pass  # not there yet, or of another version: it is read again
+        whole = is_whole(path)
+        if not whole and _is_fresh(path):
+            return _brief(path)
+        made = replace(summarise(path), complete=whole)
+        if made.bytes == size:
+            _keep(made, kept)
+        return made
+
+
+def _is_fresh(path: Path) -> bool:
+    return abs(time.time() - path.stat().st_mtime) < _WRITTEN_S
+
+
+def _keep(summary: RunSummary, kept: Path) -> None:
+    draft = kept.with_suffix(f".{uuid4().hex}.tmp")
+    try:
+        draft.write_text(json.dumps(asdict(summary)), encoding="utf-8")
+        draft.replace(kept)
+    except OSError:  # a full disk, say: the summary is as true, and made again next time
+        with contextlib.suppress(OSError):
+            draft.unlink(missing_ok=True)
+
+
+def _named(path: Path) -> RunSummary:
+    """What the file's name says."""
+    return RunSummary(
+        id=path.stem,
+        rig=path.stem.split("-", 1)[-1].rsplit("-", 1)[0].removesuffix("-incident"),
+        incident=None,
+        error=None,
+        plan_id=None,
+        plan_hash=None,
+        who="",
+        started=_stamp(path.stem),
+        ended=None,
+        samples=None,
+        lost_samples=None,
+        bytes=path.stat().st_size,
+        complete=False,
+        max_solve_error_deg=None,
+        max_tracking_error_deg=None,
+        max_lateness_us=None,
+    )
+
+
+def _unreadable(path: Path, error: Exception) -> RunSummary:
+    match error:
+        case RecordError():
+            why = error.why
+        case OSError(strerror=str(told)):
+            why = told
+        case _:
+            why = str(error)
+    return replace(_named(path), error=why)
+
+
+def _brief(path: Path) -> RunSummary:
+    """What the record's beginning says. Raises `RecordError`."""
+    run = run_of(path)
+    plan = _object(run.get("plan"))
+    named = _named(path)
+    return replace(
+        named,
+        rig=str(run.get("rig") or plan.get("rig") or named.rig),
+        incident=run.get("incident"),
+        plan_id=plan.get("plan_id"),
+        plan_hash=plan.get("plan_hash"),
+        who=run.get("who", ""),
+    )
+
+
+def summarise(path: Path) -> RunSummary:
+    """What the whole record says, but for whether it is complete. Raises `RecordError`."""
+    brief = _brief(path)
+    rows, events = read_record(path)
+    flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & LEAD == 0)
+    return replace(
+        brief,
+        started=float(rows["wall_ns"][0]) / 1e9 if rows.size else brief.started,
+        ended=float(rows["wall_ns"][-1]) / 1e9 if rows.size else None,
+        samples=int(rows.size),
+        lost_samples=_lost(rows, events),
+        max_solve_error_deg=_largest(rows["solve_error_deg"][flying]),
+        max_tracking_error_deg=_largest(rows["tracking_error_deg"][flying]),
+        max_lateness_us=_largest(rows["lateness_us"]),
+    )
+
+
+def _lost(rows: Samples, events: list[dict[str, Any]]) -> int:
+    """How many of the run's samples are missing: between the rows, and to its beginning and end where it tells them."""
+    heads = {event.get("kind"): head for event in events if isinstance(head := event.get("head"), int)}
+    first = [int(rows["seq"][0])] if rows.size else []
+    last = [int(rows["seq"][-1])] if rows.size else []
+    if "run_begin" in heads:
+        first.append(heads["run_begin"] + 1)
+    if "run_end" in heads:
+        last.append(heads["run_end"])
+    return max(last) - min(first) + 1 - rows.size if first and last else 0
+
+
+def _stamp(run: str) -> float | None:
+    """When a run began by its name, to the second [s since 1970]."""
+    try:
+        return datetime.strptime(run.split("-", 1)[0], "%Y%m%dT%H%M%S").replace(tzinfo=UTC).timestamp()
+    except ValueError:
+        return None
+
+
+def table(rows: Samples) -> pa.Table:
+    """One column a number, named with its frame and unit; what is not a number is null."""
+    columns: dict[str, Any] = {}
+    start = rows["time_ns"][0] if rows.size else 0
+    columns["time_s"] = (rows["time_ns"] - start) / 1e9
+    for name in SAMPLE.names or ():
+        values = rows[name]
+        if name == "state":
+            columns[name] = [STATES[code].value for code in values.tolist()]
+        elif name == "target":
+            columns |= {f"target_q{axis}": values[:, k] for k, axis in enumerate(_QUATERNION)}
+        elif name in _UNITS:
+            stem = name.removesuffix("_deg")
+            columns |= {f"{stem}_{frame}_{_UNITS[name]}": values[:, k] for k, frame in enumerate(FRAMES)}
+        else:
+            columns[name] = values
+    return pa.table({name: pa.array(_plain(values), from_pandas=True) for name, values in columns.items()})
+
+
+def write_export(record: Path, target: Path, kind: str) -> None:
+    """Write a record as `csv`, `parquet` or `mcap`. Raises `FileError`.
+
+    As MCAP a record that is cut off, damaged or still being written is repaired: what can be read of it, with an index.
+    """
+    try:
+        if kind == "mcap":
+            if is_whole(record):
+                shutil.copyfile(record, target)
+            else:
+                repair(record, target)
+            return
+        made = table(read_samples(record))
+    except RecordError as error:
+        raise FileError(record.name, f"a record ({error.why})") from None
+    if kind == "parquet":
+        pq.write_table(made, target)
+    else:
+        pacsv.write_csv(made, target)
+
+
+def _plain(values: Any) -> Any:
+    return np.ascontiguousarray(values) if isinstance(values, np.ndarray) else values
+
+
+def _largest(values: np.ndarray[Any, Any]) -> float | None:
+    seen = values[np.isfinite(values)]
+    return float(seen.max()) if seen.size else None
+
+
+def _object(text: str | None) -> dict[str, Any]:
+    try:
+        found = json.loads(text or "{}")
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}

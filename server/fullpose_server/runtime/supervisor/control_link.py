@@ -1,0 +1,107 @@
+"""The server's end of a rig process's control socket: requests out, answers back by number."""
+
+import asyncio
+import itertools
+from typing import Any
+
+from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract.messages import MAX_REQUEST
+from fullpose_server.runtime.contract.rig_paths import Place, control_socket
+from fullpose_server.session.lease import LeaseToken
+
+
+class RequestTooLargeError(ValueError):
+    """A request that the rig process would not read whole: its size and the most that is read are in the message."""
+
+
+class RigUnreachableError(Exception):
+    """The rig process does not answer: gone, or stuck. The message says which."""
+
+
+class ControlLink:
+    """One connection. Use `open`, then `request`; after `RigUnreachableError` open a new one."""
+
+    def __init__(self) -> None:
+        self._socket = control_socket()
+        self._waiting: dict[int, asyncio.Future[messages.Answer]] = {}
+        self._numbers = itertools.count(1)
+        self._sending = asyncio.Lock()
+        self._reader: asyncio.Task[None] | None = None
+        self.open_for_requests = False
+
+    async def open(self, place: Place) -> None:
+        """Connect. Raises `RigUnreachableError` where nobody listens."""
+        try:
+            with place.socket_address("control.sock") as address:
+                await asyncio.get_running_loop().sock_connect(self._socket, address)
+        except OSError as cause:
+            self._socket.close()
+            raise RigUnreachableError(f"no rig process listens in {place.directory} ({cause})") from cause
+        self.open_for_requests = True
+        self._reader = asyncio.create_task(self._read(), name="rig control reader")
+
+    async def request(
+        self,
+        op: str,
+        who: str,
+        *,
+        timeout_s: float,
+        command: str = "",
+        args: dict[str, Any] | None = None,
+        lease: LeaseToken | None = None,
+        action: str = "",
+        to: str | None = None,
+    ) -> messages.Answer:
+        """Send one request and wait for its answer.
+
+        Raises `RigUnreachableError`; TypeError on args not JSON and `RequestTooLargeError`, before anything is sent.
+        """
+        if not self.open_for_requests:
+            raise RigUnreachableError("the rig process has closed the connection")
+        number = next(self._numbers)
+        packet = messages.encode(messages.Request(number, op, who, command, args or {}, lease, action, to))
+        if len(packet) > MAX_REQUEST:
+            raise RequestTooLargeError(
+                f"{command or action or op}: {len(packet)} bytes, expected at most {MAX_REQUEST}"
+            )
+        waiting: asyncio.Future[messages.Answer] = asyncio.get_running_loop().create_future()
+        self._waiting[number] = waiting
+        try:
+            async with self._sending:  # one writer at a time: the loop knows one callback a socket
+                await asyncio.get_running_loop().sock_sendall(self._socket, packet)
+            return await asyncio.wait_for(waiting, timeout_s)
+        except TimeoutError as cause:
+            raise RigUnreachableError(f"the rig process has not answered within {timeout_s:g} s") from cause
+        except OSError as cause:
+            raise RigUnreachableError(f"the rig process cannot be reached ({cause})") from cause
+        finally:
+            self._waiting.pop(number, None)
+            if waiting.done() and not waiting.cancelled():
+                waiting.exception()  # told above, where it is one
+
+    async def close(self) -> None:
+        """Close the connection; waiting requests raise."""
+        if self._reader is not None:
+            self._reader.cancel()
+            await asyncio.gather(self._reader, return_exceptions=True)
+        self._end()
+
+    async def _read(self) -> None:
+        loop = asyncio.get_running_loop()
+        try:
+            while packet := await loop.sock_recv(self._socket, 1 << 20):
+                answer = messages.decode_answer(packet)
+                waiting = self._waiting.get(answer.id)
+                if waiting is not None and not waiting.done():
+                    waiting.set_result(answer)
+        except OSError:
+            pass  # the process died: those who wait are told below
+        finally:
+            self._end()
+
+    def _end(self) -> None:
+        self.open_for_requests = False
+        self._socket.close()
+        for waiting in self._waiting.values():
+            if not waiting.done():
+                waiting.set_exception(RigUnreachableError("the rig process ended before it answered"))

@@ -1,0 +1,47 @@
+"""A rig process's health, as its shared memory tells it."""
+
+import time
+
+import numpy as np
+
+from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract.shared_memory import Shared
+
+
+def beat_age_s(memory: Shared) -> float:
+    """How long ago the rig process gave its last sign of life [s]."""
+    return (time.monotonic_ns() - int(memory.header["rig_beat_ns"][0])) / 1e9
+
+
+def health_of(
+    memory: Shared, published: messages.Published, *, pid: int, alive: bool, rate_hz: float
+) -> messages.Health:
+    """Health as of now, of the process `pid` and its recorder."""
+    header = memory.header
+    recorder_age = (time.monotonic_ns() - int(header["recorder_beat_ns"][0])) / 1e9
+    return messages.Health(
+        realtime=published.realtime,
+        rate_hz=rate_hz,
+        lateness_us=memory.lateness_us(),
+        busy_us=int(header["busy_ns"][0]) / 1000.0,
+        ticks=int(header["ticks"][0]),
+        deadline_misses=int(header["misses"][0]),
+        rig_alive=alive,
+        rig_pid=pid,
+        heartbeat_age_s=beat_age_s(memory),
+        recorder=messages.RecorderHealth(
+            alive=recorder_age < 1.0,
+            run=_text(header["recorder_run"][0]),
+            lost=int(header["recorder_lost"][0]),
+            lag=max(0, int(header["head"][0]) - int(header["recorder_seq"][0])),
+            bytes_written=int(header["recorder_bytes"][0]),
+            chunks=int(header["recorder_chunks"][0]),
+            free_bytes=int(header["recorder_free_bytes"][0]),
+            error=_text(header["recorder_error"][0]),
+        ),
+        live=published.live,
+    )
+
+
+def _text(value: np.bytes_) -> str:
+    return bytes(value).decode("utf-8", "replace")

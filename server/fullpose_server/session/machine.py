@@ -1,0 +1,243 @@
+"""The session's state machine: pure and synchronous. Commands and events in, orders out; time is passed in.
+
+A refusal raises a `SessionError` and changes nothing. What happens is decided by `table.TABLE` alone; this file adds
+what a table cannot say: who may command, which plan is bound to which rig, and which alarms still stand.
+"""
+
+from dataclasses import dataclass
+
+from fullpose_server.session import table
+from fullpose_server.session.alarms import Alarm, AlarmBook, Severity
+from fullpose_server.session.errors import BindingError, IllegalCommandError, NotReadyError, SessionError
+from fullpose_server.session.lease import Lease, LeaseBook, LeaseToken
+from fullpose_server.session.states import IN_MOTION, NEEDS_NO_LEASE, Action, Command, Event, State
+from fullpose_server.session.table import When
+
+
+@dataclass(frozen=True)
+class Binding:
+    """What `load` bound together: a plan (or a live source's settings), a rig, and their hashes."""
+
+    plan_id: str
+    plan_hash: str
+    rig: str
+    rig_hash: str
+    live: bool = False  # follows a live source: there is no path to start
+
+
+@dataclass(frozen=True)
+class SilencePolicy:
+    """After how long a silence [s] the rig holds, stops and disarms; strictly rising."""
+
+    hold_s: float = 5.0
+    stop_s: float = 15.0
+    disarm_s: float = 60.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.hold_s < self.stop_s < self.disarm_s:
+            raise ValueError(f"silence {self}: expected 0 < hold_s < stop_s < disarm_s")
+
+
+_STAGES = (Event.SILENT_HOLD, Event.SILENT_STOP, Event.SILENT_DISARM)
+
+
+class Silence:
+    """Counts one party's silence and names each stage once, in order."""
+
+    def __init__(self, policy: SilencePolicy) -> None:
+        self._limits = (policy.hold_s, policy.stop_s, policy.disarm_s)
+        self._stage = 0
+
+    def due(self, silence_s: float) -> tuple[Event, ...]:
+        """The stages that fall due at this length of silence. Speech (a shorter silence) starts over."""
+        if silence_s <= self._limits[0]:
+            self._stage = 0
+            return ()
+        before = self._stage
+        self._stage = max(before, sum(silence_s > limit for limit in self._limits))
+        return _STAGES[before : self._stage]
+
+
+class SessionMachine:
+    """One rig's session. Not thread-safe: the rig process owns it."""
+
+    def __init__(self, rig: str, rig_hash: str, policy: SilencePolicy | None = None) -> None:
+        policy = policy or SilencePolicy()
+        self.rig = rig
+        self.rig_hash = rig_hash
+        self.state = State.DISCONNECTED
+        self.revision = 0
+        self.binding: Binding | None = None
+        self.alarms = AlarmBook()
+        self.linked = False
+        self.moving = False
+        self._flight = False  # whether positioning leads to a flight
+        self._lease = LeaseBook(policy.hold_s)
+        self._owner = Silence(policy)
+
+    # --- what may be asked ---
+
+    def allowed(self) -> tuple[Command, ...]:
+        """The commands that the present state accepts."""
+        return table.allowed(self.state)
+
+    def lease(self, now: float) -> Lease:
+        """Who holds command."""
+        return self._lease.view(now)
+
+    @property
+    def epoch(self) -> int:
+        """The lease's epoch: drives refuse writes of an older one."""
+        return self._lease.epoch
+
+    def check(self, command: Command, who: str, token: LeaseToken | None, now: float) -> None:
+        """Raise the `SessionError` with which `command` would be refused; changes nothing."""
+        if command not in NEEDS_NO_LEASE:
+            self._lease.checked(who, token, now)
+        if command not in table.ANYWHERE and self._find(command) is None:
+            raise IllegalCommandError(self.state, command, self.allowed())
+        if command in (Command.START, Command.GO_LIVE) and self.binding is not None:
+            wanted = "a live source" if command is Command.GO_LIVE else "a plan"
+            if self.binding.live != (command is Command.GO_LIVE):
+                raise NotReadyError("wrong_load", f"{command} needs {wanted} loaded: disarm, unload and load it")
+        if command is Command.RESET:
+            if self.moving:
+                raise NotReadyError("not_at_rest", "the rig is still braking: reset when it is at rest")
+            if self.alarms.unacknowledged:
+                codes = ", ".join(a.code for a in self.alarms.unacknowledged)
+                raise NotReadyError("unacknowledged", f"acknowledge first: {codes}")
+
+    # --- what is done ---
+
+    def command(
+        self,
+        command: Command,
+        who: str,
+        token: LeaseToken | None,
+        now: float,
+        *,
+        binding: Binding | None = None,
+        alarms: frozenset[int] | None = None,
+    ) -> tuple[Action, ...]:
+        """Do `command`: returns the orders. `binding` goes with load and, where the caller names the pair, with arm.
+
+        Raises a `SessionError`, and changes nothing, where the table, the lease, the binding or standing alarms
+        forbid it. `alarms` are the numbers that `acknowledge` is about (None: all).
+        """
+        self.check(command, who, token, now)
+        if command is Command.LOAD:
+            self._check_loadable(binding)
+        if command is Command.ARM:
+            self.check_pair(binding)
+        if command not in NEEDS_NO_LEASE:
+            self._lease = self._lease.checked(who, token, now)
+        if command is Command.ACKNOWLEDGE:
+            self.alarms = self.alarms.acknowledged(who, alarms)
+            if self.state not in table.LATCHED:
+                # No reset comes here: what stood on would take `first` from the next fault.
+                self.alarms = self.alarms.cleared()
+            self.revision += 1
+            return ()
+        row = self._find(command)
+        assert row is not None  # `check` has looked
+        if command is Command.LOAD:
+            self.binding = binding
+        if command is Command.CONNECT:
+            self.linked = True
+        if command is Command.START:
+            self._flight = True
+        if command in (Command.MOVE, Command.HOME, Command.JOG):
+            self._flight = False
+        return self._go(row)
+
+    def event(self, event: Event) -> tuple[Action, ...]:
+        """Report what happened: returns the orders, none where the state has no use for it."""
+        if event is Event.AT_REST and self.state in table.LATCHED:
+            self.moving = False  # elsewhere the rows say what rest means
+        if event is Event.LINK_LOST:
+            # A rig without link is out of our hands: its drive brakes by itself.
+            self.linked = self.moving = False
+        row = self._find(event)
+        return () if row is None else self._go(row)
+
+    def alarm(
+        self,
+        code: str,
+        severity: Severity,
+        message: str,
+        time_s: float,
+        *,
+        frame: str | None = None,
+        value: float | None = None,
+        limit: float | None = None,
+        unit: str | None = None,
+    ) -> Alarm:
+        """Raise an alarm (latched first-out); the state is not touched: report the `Event` as well."""
+        self.alarms = self.alarms.raised(code, severity, message, time_s, frame, value, limit, unit)
+        self.revision += 1
+        wanted = (code, frame, severity)
+        return next(a for a in reversed(self.alarms.standing) if (a.code, a.frame, a.severity) == wanted)
+
+    def lease_action(self, action: str, who: str, now: float, to: str | None = None) -> Lease:
+        """take, takeover (by force), release, renew, request, grant. Raises `LeaseError` or `SessionError`."""
+        book = self._lease
+        if action == "take":
+            book = book.take(who, now)
+        elif action == "takeover":
+            book = book.take(who, now, force=True)
+        elif action == "release":
+            book = book.release(who, now)
+        elif action == "renew":
+            book = book.renew(who, now)
+        elif action == "request":
+            book = book.request(who)
+        elif action == "grant":
+            book = book.grant(who, now, to)
+        else:
+            raise SessionError(f"no lease action {action!r}: take, takeover, release, renew, request, grant")
+        if (book.epoch, book.requested_by) != (self._lease.epoch, self._lease.requested_by):
+            self.revision += 1
+        self._lease = book
+        return book.view(now)
+
+    def silence(self, now: float) -> tuple[Event, ...]:
+        """The stages that fall due because the lease's owner is silent; report each as an event, with an alarm."""
+        return self._owner.due(self._lease.silence(now))
+
+    # --- inside ---
+
+    def _find(self, trigger: Command | Event) -> table.Transition | None:
+        holding = {When.FLIGHT if self._flight else When.MOVE, When.LINKED if self.linked else When.UNLINKED}
+        return table.find(self.state, trigger, frozenset(holding))
+
+    def _go(self, row: table.Transition) -> tuple[Action, ...]:
+        self.state = row.target
+        self.revision += 1
+        if row.target in IN_MOTION:
+            self.moving = True
+        elif row.target not in table.LATCHED:
+            self.moving = False
+        if Action.CLEAR in row.actions:
+            self.alarms = self.alarms.cleared()
+        if Action.UNBIND in row.actions:
+            self.binding = None
+        return row.actions
+
+    def _check_loadable(self, binding: Binding | None) -> None:
+        if binding is None:
+            raise NotReadyError("nothing_to_load", "load needs a plan folder or a live source")
+        if (binding.rig, binding.rig_hash) != (self.rig, self.rig_hash):
+            raise BindingError("the plan's rig", self.rig_hash, binding.rig_hash)
+
+    def check_pair(self, asked: Binding | None) -> None:
+        """Raise where the rig, or the pair that the caller names if any, is not the pair that was loaded."""
+        bound = self.binding
+        if bound is None:
+            raise NotReadyError("nothing_loaded", "nothing is loaded: load a plan")
+        if bound.rig_hash != self.rig_hash:
+            raise BindingError("the rig", bound.rig_hash, self.rig_hash)
+        if asked is not None:
+            if asked.plan_hash != bound.plan_hash:
+                raise BindingError("the plan", bound.plan_hash, asked.plan_hash)
+            if asked.rig_hash != bound.rig_hash:
+                raise BindingError("the rig", bound.rig_hash, asked.rig_hash)

@@ -1,0 +1,127 @@
+"""Plans as the database knows them: one row a plan, its job's status in the row, its arrays in plans/<id>/."""
+
+import shutil
+import time
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from sqlalchemy import select
+
+from fullpose_server.errors import NotFoundError, TransitionError
+from fullpose_server.store.database import Database
+from fullpose_server.store.tables import PlanRow, TrajectoryRow
+
+UNFINISHED = ("queued", "running")
+
+
+class PlanStore:
+    """Adds, lists, removes plans and moves their status; who runs them is `PlanQueue`."""
+
+    def __init__(self, database: Database, root: Path) -> None:
+        self._database = database
+        self.root = root
+        root.mkdir(parents=True, exist_ok=True)
+
+    def add(
+        self,
+        *,
+        trajectory: str,
+        rig: str,
+        rig_hash: str,
+        method: str,
+        options: dict[str, Any],
+        start_deg: list[float] | None,
+        rate_hz: float,
+        remedy: dict[str, Any] | None = None,
+    ) -> PlanRow:
+        """A new plan, queued; `remedy` (of, kind, frame, limit) makes it a remedy of another.
+
+        Raises `NotFoundError` for an unknown trajectory.
+        """
+        with self._database.begin() as session:
+            if session.get(TrajectoryRow, trajectory) is None:
+                raise NotFoundError("trajectory", trajectory)
+            row = PlanRow(
+                id=uuid4().hex[:16],
+                trajectory=trajectory,
+                rig=rig,
+                rig_hash=rig_hash,
+                method=method,
+                options=options,
+                start_deg=start_deg,
+                remedy=remedy,
+                rate_hz=rate_hz,
+                status="queued",
+                error=None,
+                result=None,
+                created=time.time(),
+                started=None,
+                finished=None,
+            )
+            session.add(row)
+        return row
+
+    def get(self, plan: str) -> PlanRow:
+        """Raises `NotFoundError`."""
+        with self._database.begin() as session:
+            row = session.get(PlanRow, plan)
+        if row is None:
+            raise NotFoundError("plan", plan)
+        return row
+
+    def all(self, trajectory: str | None = None, rig: str | None = None) -> list[PlanRow]:
+        """Newest first."""
+        query = select(PlanRow).order_by(PlanRow.created.desc())
+        if trajectory is not None:
+            query = query.where(PlanRow.trajectory == trajectory)
+        if rig is not None:
+            query = query.where(PlanRow.rig == rig)
+        with self._database.begin() as session:
+            return list(session.scalars(query))
+
+    def folder(self, plan: str) -> Path:
+        """Where the plan's arrays are."""
+        return self.root / plan
+
+    def begin(self, plan: str) -> PlanRow | None:
+        """queued -> running; None where it is no longer queued."""
+        with self._database.begin() as session:
+            row = session.get(PlanRow, plan)
+            if row is None or row.status != "queued":
+                return None
+            row.status, row.started = "running", time.time()
+            return row
+
+    def finish(
+        self, plan: str, status: str, *, result: dict[str, Any] | None = None, error: dict[str, Any] | None = None
+    ) -> None:
+        """queued or running -> done, failed, cancelled or interrupted. Raises `TransitionError` from anywhere else."""
+        with self._database.begin() as session:
+            row = session.get(PlanRow, plan)
+            if row is None or row.status not in UNFINISHED:
+                raise TransitionError(f"plan {plan} is {'gone' if row is None else row.status}: it cannot be {status}")
+            row.status, row.finished, row.result, row.error = status, time.time(), result, error
+
+    def after_restart(self) -> list[str]:
+        """Mark what was running as interrupted, and clear its folder; returns the ids still queued, oldest first."""
+        with self._database.begin() as session:
+            for row in session.scalars(select(PlanRow).where(PlanRow.status == "running")):
+                row.status, row.finished = "interrupted", time.time()
+                row.error = {"code": "interrupted", "message": "the server ended while this plan was being made"}
+            queued = session.scalars(select(PlanRow).where(PlanRow.status == "queued").order_by(PlanRow.created))
+            ids = [row.id for row in queued]
+        for draft in self.root.glob(".*"):  # what a planner was writing
+            shutil.rmtree(draft)
+        return ids
+
+    def remove(self, plan: str) -> None:
+        """Remove a finished plan. Raises `NotFoundError`, or `TransitionError` while it is being made."""
+        with self._database.begin() as session:
+            row = session.get(PlanRow, plan)
+            if row is None:
+                raise NotFoundError("plan", plan)
+            if row.status in UNFINISHED:
+                raise TransitionError(f"plan {plan} is {row.status}: cancel it first")
+            session.delete(row)
+        shutil.rmtree(self.folder(plan), ignore_errors=True)

@@ -1,0 +1,188 @@
+"""Methods, or variants of one, side by side on one flight and rig: the figures of each, and why it failed where it did.
+
+Pure: the solutions come from `solve`, the limits from `verify`, so that no method marks its own work. Radians, seconds.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fullpose.errors import MethodError
+from fullpose.methods import METHODS
+from fullpose.registry import method_options, parse_variant
+from fullpose.rig import FRAMES, LIMITS, Rig
+from fullpose.solution import Solution, limited_name
+from fullpose.solve import PLAN, PREVIEW, check_flight, solve
+from fullpose.variant import Variant
+from fullpose.verify import Verification, verify
+
+Array = NDArray[np.float64]
+
+# A sample is exact within 1e-9 deg: a hundred times the rounding of the geodesic error, far below any encoder.
+EXACT_WITHIN = np.deg2rad(1e-9)
+# sin^2 d2 + cos^2 d3 below this: within about 6 deg of the four-axis rig's singularity.
+SINGULAR_BELOW = 0.01
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Samples that miss the attitude for one reason: what, how many, when first [s], the largest error [rad]."""
+
+    reason: str
+    samples: int
+    first: float
+    max_error: float
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What a solution did. Arrays have one row a frame, base first; columns are position, rate, acceleration."""
+
+    exact_share: float  # of the samples, within `EXACT_WITHIN`
+    max_error: float  # [rad]
+    rms_error: float  # [rad]
+    max_matrix_error: float
+    violations: NDArray[np.int64]  # (4, 3) samples beyond each limit
+    peaks: Array  # (4, 3) largest magnitudes [rad, rad/s, rad/s^2]
+    total_variation: Array  # (4,) [rad] the way each frame turned
+    failures: tuple[Failure, ...]  # the most samples first
+
+
+@dataclass(frozen=True)
+class Row:
+    """One variant of a comparison. Where it does not apply to the rig, `refusal` says why and the rest is None."""
+
+    variant: Variant
+    claims_limits: bool
+    source: str
+    refusal: str | None = None
+    solution: Solution | None = None
+    verification: Verification | None = None
+    figures: Figures | None = None
+
+
+def figures(solution: Solution, verification: Verification) -> Figures:
+    """The figures of a solution, `verification` being that of its angles against its rig and flight."""
+    violations = np.zeros((4, 3), np.int64)
+    for violation in verification.violations:
+        violations[FRAMES.index(violation.frame), LIMITS.index(violation.limit)] += violation.samples
+    return Figures(
+        exact_share=float(np.mean(solution.error <= EXACT_WITHIN)),
+        max_error=float(solution.error.max()),
+        rms_error=float(np.sqrt(np.mean(solution.error**2))),
+        max_matrix_error=float(solution.matrix_error.max()),
+        violations=violations,
+        peaks=verification.peaks,
+        total_variation=np.abs(np.diff(solution.angles, axis=0)).sum(axis=0),
+        failures=failures(solution),
+    )
+
+
+def failures(solution: Solution) -> tuple[Failure, ...]:
+    """Every sample that is not exact, sorted by reason.
+
+    The method's own mark comes first (which limit of which frame); then `singularity`, where a four-axis rig stands
+    next to its singularity; else `linearised step`: the error that a step along the tangent leaves, or has gathered.
+    """
+    missed = ~(solution.error <= EXACT_WITHIN)
+    d = solution.angles
+    singular = np.zeros(len(d), bool)
+    if solution.rig.geometry.redundant:
+        singular = np.sin(d[:, 1]) ** 2 + np.cos(d[:, 2]) ** 2 < SINGULAR_BELOW
+    groups: list[tuple[str, NDArray[np.bool_]]] = []
+    for code in np.unique(solution.limited[missed & (solution.limited > 0)]):
+        name = limited_name(int(code))
+        if name is not None:
+            groups.append((f"{name[1]} limit of the {name[0]} frame", missed & (solution.limited == code)))
+    free = missed & (solution.limited == 0)
+    groups.append(("singularity", free & singular))
+    groups.append(("linearised step", free & ~singular))
+    found = [
+        Failure(
+            reason,
+            int(np.count_nonzero(where)),
+            float(solution.time[np.argmax(where)]),
+            float(solution.error[where].max()),
+        )
+        for reason, where in groups
+        if where.any()
+    ]
+    return tuple(sorted(found, key=lambda failure: (-failure.samples, failure.reason)))
+
+
+def variants(methods: Sequence[str | Variant]) -> tuple[Variant, ...]:
+    """What is asked for, texts read by `parse_variant`.
+
+    Raises `MethodError` for none, for a text that is none, and where two have one label.
+    """
+    if not methods:
+        raise MethodError("no method to compare: expected at least one name")
+    found = tuple(parse_variant(method) if isinstance(method, str) else method for method in methods)
+    labels = [one.label for one in found]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise MethodError(
+                f"{labels.count(label)} methods are called {label!r}: expected a label of its own for each"
+            )
+    return found
+
+
+def compare(
+    time: ArrayLike,
+    attitude: ArrayLike,
+    rig: Rig,
+    methods: Sequence[str | Variant],
+    start: ArrayLike | None = None,
+    clock: Callable[[], float] | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
+) -> tuple[Row, ...]:
+    """Solve the flight with each method and measure it: time (n,) [s], attitude (n, 3, 3) body from reference.
+
+    progress(label, done, total) is called as `solve` calls its own. A method that does not apply to the rig gets a
+    row that says so. Raises `InputError` for arrays that are no flight, `MethodError` as `variants` does.
+    """
+    asked = variants(methods)
+    t, C = check_flight(time, attitude)
+    return tuple(_row(t, C, rig, one, start, clock, progress) for one in asked)
+
+
+# Of the methods that are not step methods; both claim the limits.
+SOURCES = {
+    PLAN: "the planner: dynamic programming over both charts, then a smooth curve (mathematics, section 8)",
+    PREVIEW: "the exact step along a way re-planned over a horizon of known or predicted attitude (mathematics, section 9)",
+}
+
+
+def _row(
+    time: Array,
+    attitude: Array,
+    rig: Rig,
+    variant: Variant,
+    start: ArrayLike | None,
+    clock: Callable[[], float] | None,
+    progress: Callable[[str, int, int], None] | None,
+) -> Row:
+    method = variant.method
+    options = method_options(method, variant.options)
+    if method in SOURCES:
+        claims, source = True, SOURCES[method]
+    else:
+        claims, source = METHODS[method].claims_limits, METHODS[method].source
+
+    def report(done: int, total: int) -> None:
+        if progress:
+            progress(variant.label, done, total)
+
+    try:
+        if clock and method not in SOURCES:
+            # The first call loads the kernels, which is no part of a step.
+            chosen = METHODS[method]
+            own = chosen.options() if options is None else options
+            chosen.stepper(rig, own, None, attitude[0]).block(time[:2], attitude[:2])
+        solution = solve(time, attitude, rig, method, options=options, start=start, clock=clock, progress=report)
+    except MethodError as refusal:
+        return Row(variant, claims, source, refusal=str(refusal))
+    verification = verify(time, solution.angles, rig, attitude)
+    return Row(variant, claims, source, None, solution, verification, figures(solution, verification))

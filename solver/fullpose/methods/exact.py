@@ -1,0 +1,160 @@
+"""`exact`: the quadratic step in closed form, put on the exact solution curve (mathematics, sections 3 and 4)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose._jit import kernel
+from fullpose.errors import MethodError
+from fullpose.kinematics import four_axis_pose
+from fullpose.limits import WEIGHT, limit_table
+from fullpose.methods.base import Block, StepMethod
+from fullpose.methods.start_pose import start_pose
+from fullpose.methods.state import (
+    CLOCK,
+    CODE,
+    FRESH,
+    GUESS,
+    HI,
+    LO,
+    NULL,
+    PHASE,
+    POSE,
+    ROWS,
+    TOLERANCE,
+    WISH,
+    advance,
+    finish,
+    goal_from,
+    new_state,
+    prepare,
+    stand,
+    wish,
+)
+from fullpose.rig import Rig
+from fullpose.step import quadratic_step
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ExactOptions:
+    """How the redundant frame is used. Raises `MethodError` where a gain is negative or not a number.
+
+    The pose nearest (in the rig's weights) to the last one plus these movements along the self-motion is taken; with
+    all of them zero it is the minimum-norm step of the literature. The defaults fly more of the random flights than
+    that (docs/decisions/0010-null-space-defaults.md) and take a level turn past the singularity.
+    avoidance: how fast the frames leave the singularity [rad/s]; centring: how fast they leave their end stops [rad/s];
+    homing: how fast they return home [1/s]; recovery: share of the smallest frame acceleration that brakes the return
+    to the attitude after a limited sample.
+    """
+
+    avoidance: float = 2.0
+    centring: float = 2.0
+    homing: float = 0.0
+    recovery: float = 0.5
+
+    def __post_init__(self) -> None:
+        for name in ("avoidance", "centring", "homing"):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected a number, 0 or more")
+        if not 0.0 < self.recovery <= 1.0:
+            raise MethodError(f"option recovery = {self.recovery!r}: expected a number in (0, 1]")
+
+
+@kernel
+def exact_block(
+    horizontal: bool,
+    axes: NDArray[np.int64],
+    table: Array,
+    gains: Array,
+    time: Array,
+    attitude: Array,
+    state: Array,
+    target: Array,
+    angles: Array,
+    limited: NDArray[np.int16],
+    iterations: NDArray[np.int32],
+) -> None:
+    """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
+
+    gains: avoidance, centring, homing, recovery.
+    """
+    work = np.empty((ROWS, 4))
+    J = np.empty((3, 4))
+    F = np.empty((3, 3))
+    G = np.empty((3, 3))
+    A = np.empty((4, 5))
+    e = np.empty(3)
+    lo_code = np.empty(4, np.int16)
+    hi_code = np.empty(4, np.int16)
+    d = state[0:4]
+    for k in range(time.shape[0]):
+        C = attitude[k]
+        if state[PHASE] == FRESH:
+            code = int(state[CODE])
+            iterations[k] = 0
+            for i in range(4):
+                work[POSE, i] = d[i]
+        else:
+            h = time[k] - state[CLOCK]
+            prepare(table, state, h, work, lo_code, hi_code)
+            wish(table, d, h, gains, work[WISH])
+            volume = four_axis_pose(horizontal, d, F, J, work[NULL])
+            on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
+            quadratic_step(
+                J, work[NULL], volume, table[WEIGHT], d, work[WISH], e, work[LO], work[HI], work[TOLERANCE], work[GUESS]
+            )
+            iterations[k], code = finish(
+                horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code
+            )
+        for i in range(4):
+            angles[k, i] = work[POSE, i]
+        limited[k] = code
+        advance(state, target, time[k], work[POSE], code, C)
+
+
+class ExactStepper:
+    """One flight in progress with `exact`."""
+
+    def __init__(self, rig: Rig, options: ExactOptions, start: Array | None, attitude: Array) -> None:
+        if not rig.geometry.redundant:
+            raise MethodError(f"exact needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
+        self._rig = rig
+        self._table = limit_table(rig)
+        self._gains = np.array([options.avoidance, options.centring, options.homing, options.recovery])
+        self._state = new_state(*start_pose(rig, attitude, start))
+        self._target = np.array(attitude, order="C")
+
+    def begin_at_rest(self, dt: float) -> None:
+        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
+        stand(self._state, dt)
+
+    def block(self, time: Array, attitude: Array) -> Block:
+        """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
+        m = len(time)
+        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
+        exact_block(
+            self._rig.geometry.horizontal,
+            self._rig.axes,
+            self._table,
+            self._gains,
+            time,
+            attitude,
+            self._state,
+            self._target,
+            out.angles,
+            out.limited,
+            out.iterations,
+        )
+        return out
+
+
+METHOD = StepMethod(
+    name="exact",
+    source="the closed-form null-space step with the exact charts (Lin 2022; Zhao 2025, second optimisation)",
+    claims_limits=True,
+    options=ExactOptions,
+    stepper=ExactStepper,
+)

@@ -1,0 +1,107 @@
+"""Which limit holds each sample that misses the attitude, read from the angles as they are written."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose.rig import Rig
+from fullpose.solution import EXACT, limited_code
+from fullpose.trajectory.curve import LOCKED
+from fullpose.trajectory.linearisation import POSITION_UNIT
+from fullpose.verify import attitude_errors, differences, payload_attitudes
+
+Array = NDArray[np.float64]
+CHUNK = 1 << 16  # samples looked at together
+AT_LIMIT = 0.02  # share of a limit, or of `POSITION_UNIT` before a stop, within which it holds the frame
+TURNED = 1e-4  # [rad] a frame is turned by to see which way the attitude error falls
+KINDS = 3  # limits a frame
+
+
+def limit_marks(
+    time: Array, attitude: Array, angles: Array, rig: Rig, missed: NDArray[np.bool_]
+) -> NDArray[np.int16]:  # fmt: skip
+    """`limited_code` (n,) of the samples `missed` (n,), `EXACT` elsewhere: only limits that the rig has.
+
+    A limit is active where the path angles (n, 4) [rad] comes within `AT_LIMIT` of it. Of those active at the sample
+    nearest in time: the frame whose motion would take most of the attitude error away, a stop only where the frame
+    would have to go beyond it; of one frame's, position before rate before acceleration.
+    """
+    marks = np.full(len(time), EXACT, np.int16)
+    lost = np.flatnonzero(missed)
+    if not lost.size:
+        return marks
+    active = _active(time, angles, rig)
+    nearest = _nearest(np.flatnonzero(active.any(axis=(1, 2))), lost)
+    for begin in range(0, lost.size, CHUNK):
+        part = slice(begin, begin + CHUNK)
+        at, held = lost[part], nearest[part]
+        wish = _wish(attitude[at], angles[at], rig)
+        gain = np.repeat(np.abs(wish)[:, :, None], KINDS, axis=2)
+        upper = rig.position_max - angles[held] < angles[held] - rig.position_min
+        gain[:, :, 0] = np.maximum(0.0, np.where(upper, wish, -wish))
+        gain[~active[held]] = -1.0
+        best = np.argmax(gain.reshape(len(at), -1), axis=1)
+        marks[at] = limited_code(0, 0) + best
+    return marks
+
+
+def _active(time: Array, angles: Array, rig: Rig) -> NDArray[np.bool_]:
+    """The active limits (n, 4, 3), at least one in the flight.
+
+    Where none is: the one that the path comes closest to; else, of a path too short to show, any that the rig has.
+    A frame that has no room to move counts only where the rig has no other limit: it holds every sample alike.
+    """
+    has = np.isfinite(np.stack([rig.position_max, rig.max_rate, rig.max_acceleration], axis=1))
+    has &= (rig.axes >= 0)[:, None]
+    free = has.copy()
+    free[:, 0] &= rig.position_max - rig.position_min >= LOCKED
+    has = free if free.any() else has
+    assert has.any()  # without a limit nothing keeps a rig from the attitude
+    n = len(time)
+    active = np.zeros((n, 4, KINDS), np.bool_)
+    closest, within = np.inf, AT_LIMIT
+    for _ in range(2):
+        for begin in range(0, n, CHUNK):
+            end, wide = min(n, begin + CHUNK), max(0, begin - 1)
+            left = _left(time[wide : end + 1], angles[wide : end + 1], rig)[begin - wide : end - wide]
+            left[:, ~has] = np.inf
+            active[begin:end] = left <= within
+            closest = min(closest, float(left.min()))
+        if active.any():
+            return active
+        within = closest
+        if not np.isfinite(closest):
+            break
+    return np.broadcast_to(has, active.shape)
+
+
+def _left(time: Array, angles: Array, rig: Rig) -> Array:
+    """What is left of each limit (n, 4, 3), as a share of it; inf where there is none or no difference shows it."""
+    left = np.full((len(time), 4, KINDS), np.inf)
+    left[:, :, 0] = np.minimum(rig.position_max - angles, angles - rig.position_min) / POSITION_UNIT
+    if len(time) > 1:
+        rate, acceleration = differences(time, angles)
+        spare = 1.0 - np.abs(rate) / rig.max_rate
+        left[1:, :, 1] = spare
+        left[:-1, :, 1] = np.minimum(left[:-1, :, 1], spare)
+        left[1:-1, :, 2] = 1.0 - np.abs(acceleration) / rig.max_acceleration
+    return left
+
+
+def _nearest(places: NDArray[np.int64], samples: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The nearest of `places` (sorted, at least one) to each of `samples`."""
+    right = np.clip(np.searchsorted(places, samples), 0, len(places) - 1)
+    left = np.maximum(right - 1, 0)
+    nearer = np.abs(places[left] - samples) <= np.abs(places[right] - samples)
+    return places[np.where(nearer, left, right)]
+
+
+def _wish(attitude: Array, angles: Array, rig: Rig) -> Array:
+    """How fast the attitude error falls with each frame's angle (n, 4)."""
+    wish = np.zeros_like(angles)
+    for i in rig.geometry.frames:
+        turn = np.zeros(4)
+        turn[i] = TURNED
+        for side in (1.0, -1.0):
+            error, _ = attitude_errors(payload_attitudes(rig, angles + side * turn), attitude)
+            wish[:, i] -= side * error / (2.0 * TURNED)
+    return wish

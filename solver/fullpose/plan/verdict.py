@@ -1,0 +1,180 @@
+"""Verdicts and margins: what a plan says about a flight, and how much room it leaves."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose.rig import FRAMES, LIMITS, Rig
+from fullpose.solution import Blocking
+from fullpose.verify import Violation, attitude_errors, differences, payload_attitudes, verify
+
+Array = NDArray[np.float64]
+CHUNK = 1 << 18  # samples looked at together, so that an hour needs no copies of itself
+STENCIL = 4  # samples that a cubic goes through
+SPARSE = math.radians(0.01)  # [rad] of attitude half-way between samples, above which they are called too sparse
+OVERSHOOT = 1e-3  # share of a rate or acceleration limit that a cubic goes over it where the samples are on it
+CLEAR = math.radians(1e-3)  # [rad] likewise, of a position limit
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether the flight can be flown. `decided_by` names the stage that decided; `grid` [rad] it used."""
+
+    feasible: bool
+    blocking: Blocking | None
+    decided_by: str  # "checked", "position", "rate", "acceleration", "start_rate", "three-axis"
+    grid: float
+    statement: str
+    between: float  # largest entry of F - C half-way between samples; nan where not looked at
+    between_angle: float = math.nan  # [rad] the same as an angle
+
+
+@dataclass(frozen=True)
+class Margins:
+    """The smallest distance to each limit, (4, 2) a kind: value and time [s]; inf and nan where there is no limit.
+
+    Positions [rad], rates [rad/s], accelerations [rad/s^2]; negative outside. `singularity` is (value, time) of the
+    smallest sin^2 d2 + cos^2 d3.
+    """
+
+    position: Array
+    rate: Array
+    acceleration: Array
+    singularity: tuple[float, float]
+
+
+def margins(time: Array, angles: Array, rig: Rig) -> Margins:
+    """Margins of angles (n, 4) [rad] at time (n,) [s]."""
+    n = len(time)
+    tables = [np.tile([math.inf, math.nan], (4, 1)) for _ in range(3)]
+    nearest = (math.inf, math.nan)
+    for begin in range(0, n, CHUNK):
+        part = slice(begin, min(n, begin + CHUNK + 2))
+        t, x = time[part], angles[part]
+        measure = np.sin(x[:, 1]) ** 2 + np.cos(x[:, 2]) ** 2
+        k = int(np.argmin(measure))
+        if rig.geometry.redundant and measure[k] < nearest[0]:
+            nearest = (float(measure[k]), float(t[k]))
+        room = [np.minimum(x - rig.position_min, rig.position_max - x)]
+        if len(t) > 1:
+            rate, acceleration = differences(t, x)
+            room += [rig.max_rate - np.abs(rate), rig.max_acceleration - np.abs(acceleration)]
+        for kind, values in enumerate(room):
+            for i in rig.geometry.frames:
+                if not values.shape[0] or not np.isfinite(values[0, i]):
+                    continue
+                k = int(np.argmin(values[:, i]))
+                if values[k, i] < tables[kind][i, 0]:
+                    tables[kind][i] = values[k, i], t[k + (1 if kind else 0)]
+    for table in tables:
+        table.setflags(write=False)
+    return Margins(tables[0], tables[1], tables[2], nearest)
+
+
+@dataclass(frozen=True)
+class Between:
+    """Half-way between samples: angles and attitude interpolated by cubics through four samples, in real time.
+
+    `matrix` is the largest entry of F - C, `angle` [rad] the same as an angle, nan for a flight of fewer samples.
+    `excess` is how far beyond a limit the cubics go at most ([rad], or a share of a rate or acceleration limit; 0
+    inside), `frame` and `limit` (indices of `FRAMES`, `LIMITS`) whose.
+    """
+
+    matrix: float = math.nan
+    angle: float = math.nan
+    excess: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    frame: tuple[int, int, int] = (0, 0, 0)
+
+    def sentence(self) -> str:
+        """What was found there, and what could not be looked at."""
+        if math.isnan(self.matrix):
+            return f"Not looked at between samples: fewer than {STENCIL} of them."
+        if self.angle > SPARSE:
+            text = (
+                "The samples are too sparse to say what happens between them: half-way the attitude differs by up to "
+                f"{math.degrees(self.angle):.2g} deg"
+            )
+        else:
+            text = f"Half-way between samples the attitude differs by at most {math.degrees(self.angle):.1e} deg"
+        over = [
+            f"the {FRAMES[frame]} frame's {LIMITS[kind]} limit is passed by "
+            + (f"{math.degrees(excess):.2g} deg" if kind == 0 else f"{100.0 * excess:.2g} %")
+            for kind, (excess, frame) in enumerate(zip(self.excess, self.frame, strict=True))
+            if excess > (OVERSHOOT if kind else CLEAR)
+        ]
+        return f"{text}; {', '.join(over) if over else 'the limits hold'} (by cubics through {STENCIL} samples)."
+
+
+@dataclass(frozen=True)
+class Check:
+    """The independent check of a plan: errors (n,) at every sample, limits exceeded, and what is between samples."""
+
+    error: Array  # (n,) [rad]
+    matrix_error: Array  # (n,)
+    violations: tuple[Violation, ...]
+    between: Between
+
+
+def check(time: Array, attitude: Array, angles: Array, rig: Rig) -> Check:
+    """Check a whole flight by `fullpose.verify`, which shares nothing with the planner; an hour in pieces."""
+    n = len(time)
+    error, matrix_error = np.empty(n), np.empty(n)
+    violations: list[Violation] = []
+    for begin in range(0, n, CHUNK):
+        end = min(n, begin + CHUNK)
+        F = payload_attitudes(rig, angles[begin:end])
+        error[begin:end], matrix_error[begin:end] = attitude_errors(F, attitude[begin:end])
+        wide = slice(max(0, begin - 1), min(n, end + 1))
+        inner = verify(time[wide], angles[wide], rig).violations
+        violations += [v for v in inner if time[begin] <= v.time <= time[end - 1]]
+    return Check(error, matrix_error, tuple(violations), between_samples(time, attitude, angles, rig))
+
+
+def between_samples(time: Array, attitude: Array, angles: Array, rig: Rig) -> Between:
+    """Every interval of a flight looked at in its middle: time (n,) [s], attitude (n, 3, 3), angles (n, 4) [rad]."""
+    n = len(time)
+    if n < STENCIL:
+        return Between()
+    matrix, angle = 0.0, 0.0
+    excess, whose = np.zeros(3), np.zeros(3, int)
+    for begin in range(0, n - 1, CHUNK):
+        interval = np.arange(begin, min(n - 1, begin + CHUNK))
+        first = np.clip(interval - 1, 0, n - STENCIL)  # of the four samples; at the ends of the flight, to one side
+        weights = _cubic_weights(time[first[:, None] + np.arange(STENCIL)], 0.5 * (time[interval] + time[interval + 1]))
+        x, rate, acceleration = (_weighted(w, angles, first) for w in weights)
+        gap, entry = attitude_errors(payload_attitudes(rig, x), _weighted(weights[0], attitude, first))
+        matrix, angle = max(matrix, float(entry.max())), max(angle, float(gap.max()))
+        beyond = (
+            np.maximum(x - rig.position_max, rig.position_min - x),
+            np.abs(rate) / rig.max_rate - 1.0,
+            np.abs(acceleration) / rig.max_acceleration - 1.0,
+        )
+        for kind, values in enumerate(beyond):
+            most = values[:, rig.geometry.frames].max(axis=0)
+            i = int(np.argmax(most))
+            if most[i] > excess[kind]:
+                excess[kind], whose[kind] = most[i], rig.geometry.frames[i]
+    position, rate_over, acceleration_over = excess.tolist()
+    frames = int(whose[0]), int(whose[1]), int(whose[2])
+    return Between(matrix, angle, (position, rate_over, acceleration_over), frames)
+
+
+def _cubic_weights(time: Array, at: Array) -> tuple[Array, Array, Array]:
+    """Weights (m, 4) of the values at time (m, 4) in a cubic's value, slope and bend at `at` (m,)."""
+    t = time - at[:, None]
+    value, slope, bend = np.empty_like(t), np.empty_like(t), np.empty_like(t)
+    for j in range(STENCIL):
+        a, b, c = (t[:, i] for i in range(STENCIL) if i != j)
+        whole = (t[:, j] - a) * (t[:, j] - b) * (t[:, j] - c)
+        value[:, j] = -a * b * c / whole
+        slope[:, j] = (a * b + b * c + c * a) / whole
+        bend[:, j] = -2.0 * (a + b + c) / whole
+    return value, slope, bend
+
+
+def _weighted(weights: Array, y: Array, first: NDArray[np.int64]) -> Array:
+    """Sum over j of weights (m, 4) times y[first + j]; y (n, ...)."""
+    shape = (-1,) + (1,) * (y.ndim - 1)
+    return np.asarray(sum(weights[:, j].reshape(shape) * y[first + j] for j in range(STENCIL)))

@@ -1,0 +1,257 @@
+"""Method `preview`: attitude one sample at a time, with 0 to 2 s of known or predicted future.
+
+The step is the exact one inside a box that always can brake (`fullpose.step`, `fullpose.limits`,
+`fullpose.methods.state`). What is free, the place on the self-motion, follows a way found over the horizon
+(`fullpose.trajectory.beam_search`): the announced future, then the attitude predicted at the present body rate
+(`fullpose.preview.prediction`). The way is made again every few tens of milliseconds: `replan` returns a frozen
+job, whose `run` may be called in any thread or process, and `adopt` takes its result, late or not. So exactness is
+decided by foresight, and the limits by the step alone: a bad, stale or missing way costs room, never a limit.
+
+Source: mathematics, section 9.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose._jit import kernel
+from fullpose.errors import MethodError
+from fullpose.kinematics import jacobian, null_vector
+from fullpose.limits import MAX, MIN, WEIGHT, limit_table
+from fullpose.methods.base import Block
+from fullpose.methods.start_pose import start_pose
+from fullpose.methods.state import (
+    CLOCK,
+    CODE,
+    FRESH,
+    GUESS,
+    HI,
+    LO,
+    MOVING,
+    NULL,
+    PAST,
+    PHASE,
+    POSE,
+    ROWS,
+    TOLERANCE,
+    WISH,
+    advance,
+    finish,
+    goal,
+    new_state,
+    prepare,
+    stand,
+    wish,
+)
+from fullpose.preview.prediction import Track
+from fullpose.preview.replan import FIT_WINDOW, Ahead, PreviewOptions, Replan
+from fullpose.rig import Rig
+from fullpose.solution import EXACT
+from fullpose.step import quadratic_step
+from fullpose.trajectory.nodes import fill_nodes, grid_circle
+
+Array = NDArray[np.float64]
+
+START_GRID = 60  # nodes a turn among which a free start is chosen
+
+
+@kernel
+def follow(way_time: Array, way_pose: Array, way_rate: Array, state: Array, h: float, omega: float, out: Array) -> bool:
+    """out <- the increment (4,) [rad] over `h` [s] that follows the way; false where it does not reach so far.
+
+    Critically damped, bandwidth omega [1/s], by the implicit Euler step, which is stable for any h.
+    """
+    t = state[CLOCK] + h
+    last = way_time.shape[0] - 1
+    if last < 1 or t > way_time[last] or state[CLOCK] < way_time[0] - 1e-9:
+        return False
+    j = min(int((t - way_time[0]) / (way_time[1] - way_time[0])), last - 1)
+    span = way_time[j + 1] - way_time[j]
+    s = (t - way_time[j]) / span
+    a = 1.0 - s
+    moving = state[PHASE] == MOVING
+    stiffness = h * omega * omega
+    damping = 2.0 * omega
+    for i in range(4):
+        p0 = way_pose[j, i]
+        rise = way_pose[j + 1, i] - p0
+        bend0 = way_rate[j, i] * span - rise
+        bend1 = rise - way_rate[j + 1, i] * span
+        p = p0 + s * rise + s * a * (a * bend0 + s * bend1)
+        v = (rise + (1.0 - 2.0 * s) * (a * bend0 + s * bend1) + s * a * (bend1 - bend0)) / span
+        v_2 = (2.0 * (1.0 - 2.0 * s) * (bend1 - bend0) - 2.0 * (a * bend0 + s * bend1)) / (span * span)
+        if moving:
+            rate = state[4 + i] + h * (v_2 + omega * omega * (p - state[i]) + damping * v)
+            out[i] = h * rate / (1.0 + h * damping + h * stiffness)
+        else:
+            out[i] = p - state[i]
+    return True
+
+
+@kernel
+def preview_block(
+    horizontal: bool,
+    axes: NDArray[np.int64],
+    table: Array,
+    gains: Array,
+    way_time: Array,
+    way_pose: Array,
+    way_rate: Array,
+    time: Array,
+    attitude: Array,
+    state: Array,
+    target: Array,
+    angles: Array,
+    limited: NDArray[np.int16],
+    iterations: NDArray[np.int32],
+) -> None:
+    """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
+
+    gains: avoidance, centring, homing (without a way), recovery, following. `exact_block`, but for the wish.
+    """
+    work = np.empty((ROWS, 4))
+    J = np.empty((3, 4))
+    F = np.empty((3, 3))
+    G = np.empty((3, 3))
+    A = np.empty((4, 5))
+    e = np.empty(3)
+    lo_code = np.empty(4, np.int16)
+    hi_code = np.empty(4, np.int16)
+    d = state[0:4]
+    for k in range(time.shape[0]):
+        C = attitude[k]
+        if state[PHASE] == FRESH:
+            code = int(state[CODE])
+            iterations[k] = 0
+            for i in range(4):
+                work[POSE, i] = d[i]
+        else:
+            h = time[k] - state[CLOCK]
+            prepare(table, state, h, work, lo_code, hi_code)
+            if not follow(way_time, way_pose, way_rate, state, h, gains[4], work[WISH]):
+                wish(table, d, h, gains, work[WISH])
+            on_target = goal(table, axes, state, target, C, h, gains[3], F, G, e)
+            jacobian(axes, d, J)
+            volume = null_vector(J, work[NULL])
+            quadratic_step(
+                J, work[NULL], volume, table[WEIGHT], d, work[WISH], e, work[LO], work[HI], work[TOLERANCE], work[GUESS]
+            )
+            iterations[k], code = finish(
+                horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code
+            )
+        for i in range(4):
+            angles[k, i] = work[POSE, i]
+        limited[k] = code
+        advance(state, target, time[k], work[POSE], code, C)
+
+
+class PreviewStepper:
+    """One flight in progress with `preview`; a `fullpose.methods.base.Stepper` with a look-ahead."""
+
+    def __init__(self, rig: Rig, options: PreviewOptions, start: Array | None, attitude: Array) -> None:
+        """start (4,) [rad]: the pose to start near; None: where there is most room on the way that is known by then."""
+        if not rig.geometry.redundant:
+            raise MethodError(f"preview needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
+        self._rig, self._options = rig, options
+        self._table = limit_table(rig)
+        share = 1.0 - options.reserve
+        frames = [replace(frame, max_acceleration=share * frame.max_acceleration) for frame in rig.frames]
+        self._tight = replace(rig, frames=(frames[0], frames[1], frames[2], frames[3]))
+        self._gains = np.array([options.avoidance, options.centring, 0.0, options.recovery, options.following])
+        self._free = start is None
+        self._state = new_state(*start_pose(rig, attitude, start))
+        self._target = np.array(attitude, order="C")
+        self._track = Track(2.0 * FIT_WINDOW)
+        self._asked = 0
+        self.asked_at = -math.inf  # [s] when the last job was asked for
+        self.way = Ahead(0, np.empty(0), np.empty((0, 4)), np.empty((0, 4)), 0, math.inf)
+
+    def begin_at_rest(self, dt: float) -> None:
+        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
+        stand(self._state, dt)
+        self._free = False
+
+    def void(self) -> None:
+        """What the source said of the future does not come."""
+        self._track.void(float(self._state[CLOCK]))
+
+    def offer(self, time: Array, attitude: Array) -> None:
+        """The source's preview: time (m,) [s] increasing, attitude (m, 3, 3); what it said of those times is void.
+
+        Raises `InputError` where the times do not increase.
+        """
+        if len(time):
+            self._track.tell(time, attitude)
+
+    def block(self, time: Array, attitude: Array) -> Block:
+        """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
+        m = len(time)
+        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
+        if self._free and self._state[PHASE] == FRESH:
+            self._choose_start(float(time[0]), attitude[0])
+        way = self.way
+        preview_block(
+            self._rig.geometry.horizontal, self._rig.axes, self._table, self._gains, way.time, way.pose, way.rate,
+            time, attitude, self._state, self._target, out.angles, out.limited, out.iterations,
+        )  # fmt: skip
+        for k in range(m):
+            self._track.flown(float(time[k]), attitude[k])
+        self._track.forget(float(time[-1]))
+        return out
+
+    @property
+    def due(self) -> bool:
+        """Whether `replan_s` of flight have passed since the last job was asked for."""
+        return bool(self._state[PHASE] != FRESH and self._state[CLOCK] >= self.asked_at + self._options.replan_s - 1e-9)
+
+    def replan(self) -> Replan:
+        """The job that finds the way from here. Raises `MethodError` before the first sample."""
+        if self._state[PHASE] == FRESH:
+            raise MethodError("preview: no sample has been flown, there is nothing to plan from")
+        moving = self._state[PHASE] == MOVING
+        self.asked_at = float(self._state[CLOCK])
+        return self._job(
+            self.asked_at, self._state[None, :4].copy(), self._state[None, 4:8].copy(),
+            float(self._state[PAST]) if moving else 0.0,
+        )  # fmt: skip
+
+    def adopt(self, way: Ahead) -> bool:
+        """Follow a way from now on; false, and nothing changes, where it is older than the one in use or run out."""
+        if way.number <= self.way.number or way.time[-1] <= self._state[CLOCK]:
+            return False
+        self.way = way
+        return True
+
+    def _job(self, clock: float, pose: Array, rate: Array, past: float) -> Replan:
+        self._asked += 1
+        return Replan(
+            self._asked, self._tight, self._options, clock, pose, rate, past, *self._track.copy(),
+        )  # fmt: skip
+
+    def _choose_start(self, time: float, attitude: Array) -> None:
+        """The start with the cheapest way over what is known, of all nodes inside the ranges; else the nearest pose."""
+        self._free = False
+        poses = start_nodes(self._rig, self._table, attitude)
+        if not len(poses) or self._state[CODE] != EXACT:
+            return
+        self._track.flown(time, attitude)
+        way = self._job(time, poses, np.zeros_like(poses), 0.0).run()
+        pose, code = start_pose(self._rig, attitude, way.pose[0])
+        if code == EXACT:
+            self._state = new_state(pose, code)
+            self.way = way
+
+
+def start_nodes(rig: Rig, table: Array, attitude: Array) -> Array:
+    """Exact poses (m, 4) [rad] for one attitude, inside the position limits, all round both charts, near home."""
+    low = np.where(np.isfinite(table[MIN]) & (table[MAX] - table[MIN] < 2.0 * math.pi), table[MIN], rig.home - math.pi)
+    n = 4 * START_GRID
+    position, measure, alive = np.zeros((n, 4)), np.ones(n), np.zeros(n, np.bool_)
+    cosines, sines = grid_circle(START_GRID)
+    fill_nodes(
+        rig.geometry.horizontal, np.ascontiguousarray(attitude), cosines, sines, low, table[MAX].copy(),
+        position, measure, alive,
+    )  # fmt: skip
+    return np.ascontiguousarray(position[alive & (position >= table[MIN]).all(axis=1)])

@@ -1,0 +1,272 @@
+"""Dynamic programming over the nodes: the cheapest chain under the rate limits (mathematics, section 8, steps 1 and 2).
+
+Stages lie some 50 ms apart; an edge joins two nodes of neighbouring stages whose angles differ, frame by frame, by no
+more than the rate limit allows. The cost is the integral of the rates squared, each as a share of its limit, plus a
+rise near the singularity. Windows on the grid keep the work at nodes times neighbours a stage; back-pointers are kept
+for a block of stages and the costs at its beginning, so memory does not grow with the flight.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose.charts import TURN
+from fullpose.rig import Rig
+from fullpose.trajectory.nodes import Lattice, fill_nodes, grid_circle
+from fullpose.trajectory.options import PlanOptions
+from fullpose.trajectory.shortest_path_kernels import advance, nearest_crossing, node_costs, single
+
+Array = NDArray[np.float64]
+REFERENCE_RATE = math.pi  # [rad/s] stands in for the limit, in costs only, where no frame has one
+BACK_BYTES = 128 << 20  # of back-pointers held at once
+# How far an edge is looked for where no rate limit bounds it: times the body's own rotation, and cells on top.
+LOOK, LOOK_CELLS = 10.0, 4.0
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Avoid:
+    """A place that a chain should stay away from: within `radius` [rad] of `angles` (k, 4) [rad] at `time` (k,) [s]."""
+
+    time: Array
+    angles: Array
+    radius: float
+    cost: float  # [1/s] at the centre
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A way through the stages, or how far one came.
+
+    `angles` (k, 4) [rad] unwrapped, one row a stage; empty where there is no chain. `reached` stages could be reached;
+    `frame`, `limit` (indices of `FRAMES`, `LIMITS`) closed the next one.
+    """
+
+    angles: Array
+    cost: float
+    reached: int
+    frame: int = -1
+    limit: int = -1
+
+    @property
+    def found(self) -> bool:
+        """Whether a chain reaches the end."""
+        return len(self.angles) > 0
+
+
+def reference_rates(rig: Rig) -> Array:
+    """The rates that costs are measured in: the limits, or the largest of the others where there is none. (4,)"""
+    rate = rig.max_rate.copy()
+    finite = np.isfinite(rate) & (rig.axes >= 0)
+    rate[~finite] = rate[finite].max() if finite.any() else REFERENCE_RATE
+    return rate
+
+
+class Programme:
+    """The dynamic programme of one flight on one grid; `run` finds the chain."""
+
+    def __init__(
+        self, time: Array, attitude: Array, rig: Rig, grid: Lattice, options: PlanOptions, slack: float = 0.0
+    ) -> None:
+        """time (k,) [s] and attitude (k, 3, 3) of the stages; `slack` [rad] widens every edge and range."""
+        self.time, self.attitude, self.rig, self.grid, self.options = time, attitude, rig, grid, options
+        self.slack = slack
+        self.cosines, self.sines = grid_circle(grid.size)
+        self.rates = reference_rates(rig)
+        self.stretch = 1.0
+        self.excess = 0.0
+        self.margin_gain = 1.0
+        self.avoid: list[Avoid] = []
+        self.motion: tuple[Array, Array] | None = None  # pose and rates (4,) at the first stage: what inertia allows
+        self.everywhere = False  # whether a frame that no rate limit bounds is looked for all the way round
+        longest = float(np.diff(time).max(initial=0.0))
+        self._unlimited = longest > 0.0 and bool((rig.max_rate * longest >= math.pi).any())
+        self.room_cost = 0.0  # on ranges nearly used up at the last stage, for a flight that goes on after it
+
+    def nodes(self, stage: int) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """(position (4G, 4), cost (4G,), alive (4G,)) of a stage."""
+        n = 4 * self.grid.size
+        position = np.zeros((n, 4))
+        measure = np.ones(n)
+        alive = np.zeros(n, np.bool_)
+        fill_nodes(
+            self.grid.horizontal, self.attitude[stage], self.cosines, self.sines, self.grid.low, self.grid.high,
+            position, measure, alive,
+        )  # fmt: skip
+        o = self.options
+        cost = np.empty(n)
+        node_costs(
+            position, measure, self.rig.home, self.grid.wraps.astype(float), o.home_cost,
+            o.singularity_margin * self.margin_gain, o.singularity_cost * self.margin_gain, cost,
+        )  # fmt: skip
+        for place in self.avoid:
+            if place.time[0] <= self.time[stage] <= place.time[-1]:
+                gap = position - place.angles[int(np.searchsorted(place.time, self.time[stage]))]
+                gap -= TURN * np.rint(gap / TURN)
+                near = np.maximum(0.0, 1.0 - np.abs(gap).max(axis=1) / place.radius)
+                cost += place.cost * near
+        dt = self.time[min(stage + 1, len(self.time) - 1)] - self.time[max(stage - 1, 0)]
+        cost *= 0.5 * dt if len(self.time) > 1 else 1.0
+        if self.motion is not None:
+            alive &= self._within_inertia(stage, position)
+        if self.room_cost and stage == len(self.time) - 1:
+            finite = np.isfinite(self.grid.high)
+            middle = 0.5 * (self.grid.low[finite] + self.grid.high[finite])
+            used = (position[:, finite] - middle) / (self.grid.high[finite] - middle)
+            cost += self.room_cost * (used**4).sum(axis=1)
+        return position, cost, alive
+
+    def _inertia(self, stage: int, position: Array) -> tuple[Array, Array]:
+        """(gap (m, 4), reach (4,)) [rad]: how far from coasting at the first stage's rates, and how far it may be."""
+        assert self.motion is not None
+        pose, rate = self.motion
+        t = self.time[stage] - self.time[0]
+        gap = position - (pose + rate * t)
+        gap -= np.where(self.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
+        reach = 0.5 * np.minimum(self.rig.max_acceleration, 1e6) * t * t + 1.5 * self.grid.step + self.slack
+        return np.abs(gap), np.asarray(reach)
+
+    def _within_inertia(self, stage: int, position: Array) -> NDArray[np.bool_]:
+        """The nodes (4G,) that the accelerations let the frames reach from the first stage's pose and rates."""
+        gap, reach = self._inertia(stage, position)
+        return np.asarray((gap <= reach).all(axis=1))
+
+    def run(self, start: Array | None = None, progress: Progress | None = None) -> Chain:
+        """The cheapest chain from the nodes next to `start` (4,) [rad], or from any."""
+        grid, n = self.grid, len(self.time)
+        W = int(np.prod(grid.copies))
+        block = max(64, BACK_BYTES // (4 * grid.states))
+        position, cost, alive = self.nodes(0)
+        costs = self._first(position, cost, alive, start, W)
+        if not np.isfinite(costs).any():
+            return Chain(np.empty((0, 4)), math.inf, 0, *self._closed_by_position(0))
+        checkpoints = [(0, costs, position)]
+        back = np.empty((min(block, max(1, n - 1)), grid.states), np.int32)
+        for stage in range(1, n):
+            if (stage - 1) % block == 0 and stage > 1:
+                checkpoints.append((stage - 1, costs, position))
+            ahead = self._step(stage, position, costs, back[(stage - 1) % block])
+            if ahead is None:
+                return Chain(np.empty((0, 4)), math.inf, stage, *self._closed_by(stage, position, costs))
+            position, costs = ahead
+            if progress is not None and stage % 64 == 0:
+                progress(stage, n)
+        final = int(np.argmin(costs))
+        path = np.empty(n, np.int64)
+        path[-1] = final
+        for number in range(len(checkpoints) - 1, -1, -1):
+            first, at, where = checkpoints[number]
+            last = checkpoints[number + 1][0] if number + 1 < len(checkpoints) else n - 1
+            if number + 1 < len(checkpoints):  # these pointers were overwritten: compute them again
+                for stage in range(first + 1, last + 1):
+                    again = self._step(stage, where, at, back[(stage - 1) % block])
+                    if again is None:
+                        raise AssertionError("a stage reached before is out of reach now")
+                    where, at = again
+            for stage in range(last, first, -1):
+                path[stage - 1] = back[(stage - 1) % block][path[stage]]
+        return Chain(self._unwrapped(path, W, start), float(costs[final]), n)
+
+    def _first(self, position: Array, cost: Array, alive: NDArray[np.bool_], start: Array | None, W: int) -> Array:
+        costs = np.full((len(position), W), math.inf)
+        turns = np.array(np.unravel_index(np.arange(W), self.grid.copies)).T  # (W, 4)
+        lifted = position[:, None, :] + TURN * turns[None]
+        inside = (lifted <= self.grid.high).all(axis=2) & alive[:, None]
+        costs[inside] = np.broadcast_to(cost[:, None], costs.shape)[inside]
+        if start is not None:
+            gap = lifted - start
+            gap -= np.where(self.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
+            far = np.abs(gap).max(axis=2)
+            near = inside & (far <= 1.5 * self.grid.step + self.slack)
+            costs[~near] = math.inf
+            costs[near] += far[near]
+        return costs.ravel()
+
+    def _reach(self, stage: int) -> Array:
+        """How far each frame may be after a stage (4,) [rad]; `bounded` says when less than the limits allow."""
+        reach = self.rig.max_rate * (self.time[stage] - self.time[stage - 1])
+        if self.bounded:
+            turned = self.attitude[stage] @ self.attitude[stage - 1].T
+            body = math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(turned)) - 1.0))))
+            reach = np.where(reach >= math.pi, min(LOOK * body + LOOK_CELLS * self.grid.step, math.pi), reach)
+        return np.asarray(np.minimum(reach, 1e3) + self.slack)
+
+    @property
+    def bounded(self) -> bool:
+        """Whether edges are kept short that the limits do not bound: a chain that is missing then may exist."""
+        return self._unlimited and not self.everywhere
+
+    def _step(self, stage: int, position: Array, costs: Array, back: NDArray[np.int32]) -> tuple[Array, Array] | None:
+        dt = self.time[stage] - self.time[stage - 1]
+        ahead, node_cost, alive = self.nodes(stage)
+        after = np.empty_like(costs)
+        weight = self.rig.weight / (self.rates**2 * dt)
+        reached = advance(
+            position, costs, ahead, alive, node_cost, self._reach(stage), self.stretch, self.excess, weight,
+            self.grid.high, self.grid.wraps, self.grid.copies, after, back,
+        )  # fmt: skip
+        return (ahead, after) if reached else None
+
+    def _closed_by_position(self, stage: int) -> tuple[int, int]:
+        """(frame, 0): the frame whose range lies farthest from the nearest node of a stage that has none."""
+        n = 4 * self.grid.size
+        position, measure, alive = np.zeros((n, 4)), np.ones(n), np.zeros(n, np.bool_)
+        wide = np.full(4, math.inf)
+        fill_nodes(
+            self.grid.horizontal, self.attitude[stage], self.cosines, self.sines, self.grid.low, wide,
+            position, measure, alive,
+        )  # fmt: skip
+        over = position - self.grid.high
+        over = np.minimum(over, self.grid.low + TURN - position)[alive]  # to the nearer end of the range
+        best = over[np.argmin(over.max(axis=1))]
+        return int(np.argmax(best)), 0
+
+    def _closed_by_inertia(self, stage: int) -> tuple[int, int] | None:
+        """(frame, 2): whose acceleration keeps it from the nearest node of a stage that has some, but for inertia."""
+        if self.motion is None:
+            return None
+        motion, self.motion = self.motion, None
+        position, _, alive = self.nodes(stage)
+        self.motion = motion
+        if not alive.any():
+            return None
+        gap, reach = self._inertia(stage, position[alive])
+        over = gap / reach
+        return int(np.argmax(over[np.argmin(over.max(axis=1))])), 2
+
+    def _closed_by(self, stage: int, position: Array, costs: Array) -> tuple[int, int]:
+        ahead, _, alive = self.nodes(stage)
+        if not alive.any():
+            return self._closed_by_inertia(stage) or self._closed_by_position(stage)
+        frame, ratio = nearest_crossing(position, costs, ahead, alive, self.grid.wraps, self._reach(stage))
+        if ratio <= 1.0:  # only the count of turns kept the edge away: the range, then
+            finite = np.isfinite(self.grid.high)
+            return int(np.argmax(finite)), 0
+        return frame, 1
+
+    def _unwrapped(self, path: NDArray[np.int64], W: int, start: Array | None) -> Array:
+        """The angles of a path of states (k, 4), continuous, in their counted turns, else the turn nearest home."""
+        n = len(path)
+        angles = np.empty((n, 4))
+        turns = np.array(np.unravel_index(path % W, self.grid.copies)).T
+        node = path // W
+        G = self.grid.size
+        for stage in range(n):
+            single(
+                self.grid.horizontal, self.attitude[stage], node[stage] // G, self.cosines[node[stage] % G],
+                self.sines[node[stage] % G], node[stage] % G, G, self.grid.low, angles[stage],
+            )  # fmt: skip
+        angles += TURN * turns
+        wraps = self.grid.wraps
+        if n > 1:
+            steps = np.diff(angles[:, wraps], axis=0)
+            steps -= TURN * np.rint(steps / TURN)
+            angles[1:, wraps] = angles[0, wraps] + np.cumsum(steps, axis=0)
+        if wraps.any():
+            target = self.rig.home[wraps] if start is None else start[wraps]
+            at = angles[0, wraps]
+            angles[:, wraps] += TURN * np.rint((target - at) / TURN)
+        return angles

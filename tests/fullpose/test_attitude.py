@@ -1,0 +1,79 @@
+"""Conversions against SciPy's Rotation, which shares no code with them, at singular attitudes too."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from fullpose.attitude import (
+    dcm_from_euler,
+    dcm_from_quaternion,
+    euler_from_dcm,
+    euler_from_ned,
+    quaternion_from_dcm,
+    quaternion_from_euler,
+    quaternion_from_ned,
+)
+
+ANGLE = st.one_of(
+    st.floats(-10.0, 10.0), st.sampled_from([0.0, np.pi / 2, -np.pi / 2, np.pi, -np.pi, np.pi / 2 - 1e-9, 1e-300])
+)
+
+
+def scipy_dcm(yaw: float, pitch: float, roll: float) -> np.ndarray:
+    return Rotation.from_euler("YZX", [yaw, pitch, roll]).as_matrix().T
+
+
+@given(ANGLE, ANGLE, ANGLE)
+def test_matrix_of_euler_angles(yaw: float, pitch: float, roll: float) -> None:
+    np.testing.assert_allclose(dcm_from_euler(yaw, pitch, roll)[0], scipy_dcm(yaw, pitch, roll), atol=1e-14)
+
+
+@given(ANGLE, ANGLE, ANGLE)
+def test_euler_angles_give_their_matrix_back(yaw: float, pitch: float, roll: float) -> None:
+    C = dcm_from_euler(yaw, pitch, roll)
+    np.testing.assert_allclose(dcm_from_euler(*euler_from_dcm(C)), C, atol=3e-12)
+
+
+@given(ANGLE, ANGLE, ANGLE)
+def test_quaternion_is_the_active_rotation(yaw: float, pitch: float, roll: float) -> None:
+    w, x, y, z = quaternion_from_euler(yaw, pitch, roll)[0]
+    np.testing.assert_allclose(Rotation.from_quat([x, y, z, w]).as_matrix().T, scipy_dcm(yaw, pitch, roll), atol=1e-14)
+
+
+@given(ANGLE, ANGLE, ANGLE)
+def test_quaternion_and_matrix_agree_both_ways(yaw: float, pitch: float, roll: float) -> None:
+    q = quaternion_from_euler(yaw, pitch, roll)
+    C = dcm_from_quaternion(q)
+    np.testing.assert_allclose(C[0], scipy_dcm(yaw, pitch, roll), atol=1e-14)
+    back = quaternion_from_dcm(C)
+    assert back[0, 0] >= 0.0
+    np.testing.assert_allclose(abs(float(np.sum(back * q))), 1.0, atol=1e-14)
+    np.testing.assert_allclose(dcm_from_quaternion(back), C, atol=2e-15)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_half_turns_have_a_quaternion(axis: int) -> None:
+    C = -np.eye(3)
+    C[axis, axis] = 1.0
+    np.testing.assert_allclose(dcm_from_quaternion(quaternion_from_dcm(C[None]))[0], C, atol=1e-15)
+
+
+@given(ANGLE, ANGLE, ANGLE)
+def test_north_east_down(heading: float, pitch: float, bank: float) -> None:
+    """The same flight in NED: Z-Y-X angles, x=N, y=-D, z=E for the reference and x=F, y=-D, z=R for the body."""
+    body_from_ned = Rotation.from_euler("ZYX", [heading, pitch, bank]).as_matrix().T
+    change = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    ours = change @ body_from_ned @ change.T
+    np.testing.assert_allclose(dcm_from_euler(*euler_from_ned(heading, pitch, bank))[0], ours, atol=1e-14)
+    x, y, z, w = Rotation.from_matrix(body_from_ned.T).as_quat()
+    np.testing.assert_allclose(dcm_from_quaternion(quaternion_from_ned([[w, x, y, z]]))[0], ours, atol=1e-14)
+
+
+def test_many_rows_at_once() -> None:
+    euler = np.random.default_rng(1).uniform(-3.0, 3.0, (3, 50))
+    rows = dcm_from_euler(*euler)
+    assert rows.shape == (50, 3, 3)
+    for k in range(50):
+        np.testing.assert_array_equal(rows[k], dcm_from_euler(*euler[:, k])[0])

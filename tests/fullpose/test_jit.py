@@ -1,0 +1,43 @@
+"""How kernels are compiled, and that the inner ones are what their compilation takes them for."""
+
+import ast
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fullpose.kinematics
+from fullpose._jit import kernel
+
+SOLVER = Path(fullpose.kinematics.__file__).parent
+INNER = [
+    pytest.param(node, id=f"{path.stem}.{node.name}")
+    for path in sorted(SOLVER.rglob("*.py"))
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    if isinstance(node, ast.FunctionDef)
+    and any(isinstance(mark, ast.Name) and mark.id in ("inner", "inlined") for mark in node.decorator_list)
+]
+
+
+def test_division_by_zero_is_numpys() -> None:
+    @kernel
+    def ratio(a: float, b: float) -> float:
+        return a / b
+
+    assert ratio(1.0, 0.0) == np.inf
+    assert np.isnan(ratio(0.0, 0.0))
+
+
+@pytest.mark.parametrize("function", INNER)
+def test_an_inner_kernel_makes_no_array_and_returns_none(function: ast.FunctionDef) -> None:
+    """Nobody would count its owners: it would leak, or be freed under its reader."""
+    for node in (inside for statement in function.body for inside in ast.walk(statement)):
+        assert not isinstance(node, ast.List | ast.ListComp | ast.Set | ast.Dict)
+        if isinstance(node, ast.Attribute):
+            assert isinstance(node.value, ast.Name)
+            assert node.value.id == "math" or node.attr in ("inf", "rint", "shape")
+    assert function.returns is not None
+    returned = ast.unparse(function.returns)
+    for word in ("float", "int", "bool", "None", "tuple"):
+        returned = returned.replace(word, "")
+    assert not returned.strip("[], ")

@@ -1,0 +1,19 @@
+"""The mark of a limited sample and back."""
+
+import pytest
+
+from fullpose.rig import FRAMES, LIMITS
+from fullpose.solution import EXACT, limited_code, limited_name
+
+
+def test_every_mark_names_its_frame_and_limit() -> None:
+    codes = {limited_code(frame, limit): (FRAMES[frame], LIMITS[limit]) for frame in range(4) for limit in range(3)}
+    assert sorted(codes) == list(range(1, 13))
+    for code, name in codes.items():
+        assert limited_name(code) == name
+    assert limited_name(EXACT) is None
+
+
+def test_no_mark_beyond_the_last() -> None:
+    with pytest.raises(IndexError):
+        limited_name(13)

@@ -1,0 +1,151 @@
+"""The dynamic programme against an exhaustive search that shares nothing with it but the nodes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
+from fullpose.plan.strategies import Search
+from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
+from fullpose.scenarios import random_flight
+from fullpose.trajectory.nodes import lattice
+from fullpose.trajectory.options import PlanOptions
+from fullpose.trajectory.shortest_path import Programme, reference_rates
+from fullpose.verify import payload_attitudes
+
+DEG = np.pi / 180.0
+LIMITED = builtin_rigs()["vertical-limited"]
+TURN = 2.0 * np.pi
+
+
+def programme(rig, seed=3, stages=8, grid=12.0, rate=60.0, interval=0.1, **changes):
+    t, q = random_flight(seed, interval * (stages - 1), 1.0 / interval, rate * DEG)
+    options = replace(PlanOptions(), **changes)
+    return Programme(t, dcm_from_quaternion(q), rig, lattice(rig, grid * DEG), options)
+
+
+def brute_force(p):
+    """The least cost by dense matrices over all pairs of nodes, inf where there is no chain."""
+    position, cost, alive = p.nodes(0)
+    best = np.where(alive, cost, np.inf)
+    rates = reference_rates(p.rig)
+    for k in range(1, len(p.time)):
+        ahead, cost, alive = p.nodes(k)
+        gap = ahead[None, :, :] - position[:, None, :]
+        gap -= np.where(p.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
+        dt = p.time[k] - p.time[k - 1]
+        allowed = (np.abs(gap) <= p.rig.max_rate * dt + p.slack).all(axis=2)
+        edges = (p.rig.weight * (gap / rates) ** 2).sum(axis=2) / dt
+        total = best[:, None] + np.where(allowed, edges, np.inf)
+        best = np.where(alive, total.min(axis=0) + cost, np.inf)
+        position = ahead
+    return best.min()
+
+
+@pytest.mark.parametrize("geometry", [Geometry.VERTICAL_4, Geometry.HORIZONTAL_4])
+@pytest.mark.parametrize("rate", [30.0, 90.0, 200.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_same_cost_as_the_search_over_all_pairs(geometry, rate, seed):
+    frames = tuple(FrameLimits(-s * DEG, s * DEG, r * DEG) for s, r in ((170, 200), (170, 250), (100, 250), (60, 600)))
+    p = programme(Rig("r", geometry, frames), seed=seed, rate=rate)
+    expected = brute_force(p)
+    chain = p.run()
+    assert chain.found == np.isfinite(expected)
+    if chain.found:
+        assert chain.cost == pytest.approx(expected, rel=1e-12)
+
+
+def test_chain_is_exact_continuous_and_within_the_rates():
+    p = programme(LIMITED, stages=100, grid=2.0, interval=0.05)
+    chain = p.run()
+    assert chain.found
+    assert np.abs(payload_attitudes(LIMITED, chain.angles) - p.attitude).max() < 2e-13
+    assert (np.abs(np.diff(chain.angles, axis=0)) <= LIMITED.max_rate * 0.05 * (1 + 1e-9)).all()
+    assert (np.abs(chain.angles[:, 3]) <= 60 * DEG).all()
+
+
+def test_pointers_computed_again_give_the_same_chain(monkeypatch):
+    p = programme(LIMITED, stages=200, grid=6.0, interval=0.05)
+    once = p.run()
+    monkeypatch.setattr("fullpose.trajectory.shortest_path.BACK_BYTES", 1)  # blocks of 64 stages
+    again = p.run()
+    assert np.array_equal(once.angles, again.angles)
+
+
+def test_the_frontier_names_the_rate_that_closed_it():
+    time = np.arange(0.0, 1.01, 0.05)
+    C = dcm_from_euler(0.0, 200 * DEG * np.clip(time - 0.5, 0, None), 0.0)  # pitch alone, from half a second on
+    slow = FrameLimits(-50 * DEG, 50 * DEG, 40 * DEG)
+    rig = Rig("slow", Geometry.VERTICAL_4, (slow, FrameLimits(max_rate=60 * DEG), slow, slow))
+    chain = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
+    assert not chain.found
+    assert 0.5 < time[chain.reached] < 0.8
+    assert (chain.frame, chain.limit) == (1, 1)
+
+
+def test_the_frontier_names_the_range_that_closed_it():
+    time = np.arange(0.0, 1.01, 0.05)
+    C = dcm_from_euler(0.0, 90 * DEG * time, 0.0)
+    narrow = FrameLimits(-20 * DEG, 20 * DEG)
+    rig = Rig("narrow", Geometry.VERTICAL_4, (narrow, FrameLimits(-30 * DEG, 30 * DEG), narrow, narrow))
+    chain = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
+    assert not chain.found
+    assert chain.limit == 0
+    assert 20 <= 90 * time[chain.reached] <= 60
+
+
+def test_turns_of_a_bounded_frame_are_counted():
+    # Yaw alone at the level: base and middle share it; two and a half turns fit, three do not.
+    time = np.arange(0.0, 8.01, 0.05)
+    frames = (
+        FrameLimits(0.0, 450 * DEG),
+        FrameLimits(-DEG, DEG),
+        FrameLimits(-10 * DEG, 10 * DEG),
+        FrameLimits(-DEG, DEG),
+    )
+    rig = Rig("turns", Geometry.VERTICAL_4, frames)
+    counted = np.array([True, False, False, False])
+    for turn, fits in ((450.0, True), (480.0, False)):
+        C = dcm_from_euler(turn * DEG * time / 8.0, 0.0, 0.0)
+        chain = Programme(time, C, rig, lattice(rig, 2 * DEG, counted), PlanOptions()).run()
+        assert chain.found == fits
+        if fits:
+            assert chain.angles[:, 0].min() >= 0.0
+            assert chain.angles[:, 0].max() <= 450 * DEG + 1e-12
+
+
+def test_without_rate_limits_the_chain_is_looked_for_nearby_and_then_everywhere():
+    rig = Rig("free", Geometry.VERTICAL_4, (FrameLimits(),) * 4)
+    p = programme(rig, stages=40, grid=4.0, interval=0.05)
+    assert p.bounded
+    assert (p._reach(1) < 1.5).all()
+    near = p.run()
+    p.everywhere = True
+    assert not p.bounded
+    assert (p._reach(1) > np.pi).all()
+    assert near.cost == pytest.approx(p.run().cost)  # the cheapest chain has no long edges
+    assert not programme(LIMITED).bounded
+
+
+def test_a_chain_that_is_missing_nearby_is_looked_for_everywhere(monkeypatch):
+    monkeypatch.setattr("fullpose.trajectory.shortest_path.LOOK", 0.0)
+    monkeypatch.setattr("fullpose.trajectory.shortest_path.LOOK_CELLS", 0.0)
+    p = programme(Rig("free", Geometry.VERTICAL_4, (FrameLimits(),) * 4), interval=0.05)
+    assert not p.run().found
+    search = Search(p.time, p.attitude, p.rig, None, None, PlanOptions(), None)
+    assert search.chain(p.grid.step).found
+
+
+def test_inertia_that_closes_the_way_is_named_as_an_acceleration():
+    p = programme(replace_acceleration(LIMITED, 1.0 * DEG), stages=20, grid=2.0, interval=0.05)
+    pose = programme(LIMITED, stages=20, grid=2.0, interval=0.05).run().angles[0]
+    p.motion = pose, np.array([3.0, -3.0, 3.0, 3.0])
+    chain = p.run(pose)
+    assert not chain.found
+    assert chain.limit == 2
+
+
+def replace_acceleration(rig, value):
+    frames = tuple(replace(frame, max_acceleration=value) for frame in rig.frames)
+    return replace(rig, frames=frames)

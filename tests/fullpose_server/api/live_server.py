@@ -1,0 +1,170 @@
+"""A real server on a loopback port, in a thread of this process."""
+
+import asyncio
+import json
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import uvicorn
+from websockets.sync.client import ClientConnection, connect
+
+from fullpose_server.app import create_app
+from fullpose_server.cli._serving import bind
+from fullpose_server.settings import Settings
+
+FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(
+    f"{k / 50},{40 * (k / 100) ** 2},{10 * (k / 100) ** 2},{-5 * (k / 100) ** 2}\n" for k in range(101)
+)
+
+
+class LiveServer:
+    """Where the server is, and how to speak to it."""
+
+    def __init__(self, port: int, settings: Settings) -> None:
+        self.settings = settings
+        self.url = f"http://127.0.0.1:{port}"
+        self.ws = f"ws://127.0.0.1:{port}/api/v1"
+        self.http = httpx.Client(base_url=f"{self.url}/api/v1", timeout=60.0, headers={"X-Fullpose-Client": "ann"})
+        self.sequence = 0
+
+    def upload(self, text: str | bytes = FLIGHT, file: str = "flight.csv", **fields: str) -> httpx.Response:
+        return self.http.post("/trajectories", files={"file": (file, text)}, data=fields)
+
+    def plan(self, rig: str = "vertical-4", method: str = "exact", text: str = FLIGHT) -> dict[str, Any]:
+        sha256 = self.upload(text).json()["sha256"]
+        made = self.http.post("/plans", json={"trajectory": sha256, "rig": rig, "method": method})
+        assert made.status_code == 202, made.text
+        plan: dict[str, Any] = made.json()
+        while plan["status"] in ("queued", "running"):
+            plan = self.http.get(f"/plans/{plan['id']}").json()
+        return plan
+
+    def stream(self, rig: str = "vertical-4", **options: Any) -> ClientConnection:
+        return connect(f"{self.ws}/rigs/{rig}/stream", proxy=None, max_size=None, **options)
+
+
+class Operator:
+    """Commands one rig under its lease."""
+
+    def __init__(self, server: LiveServer, rig: str = "vertical-4") -> None:
+        self.server, self.rig = server, rig
+        self.epoch = self.sequence = 0
+
+    def take(self, action: str = "takeover") -> None:
+        held = self.server.http.post(f"/rigs/{self.rig}/lease", json={"action": action}).json()
+        if held["epoch"] != self.epoch:
+            self.epoch, self.sequence = held["epoch"], held["sequence"]
+
+    def command(self, word: str, **args: Any) -> httpx.Response:
+        self.sequence += 1
+        lease = {"epoch": self.epoch, "sequence": self.sequence}
+        body = {"command": word, "args": args, "lease": lease}
+        return self.server.http.post(f"/rigs/{self.rig}/commands", json=body)
+
+    def session(self) -> dict[str, Any]:
+        answer: dict[str, Any] = self.server.http.get(f"/rigs/{self.rig}/session").json()
+        return answer
+
+    def wait(self, *states: str) -> dict[str, Any]:
+        """Follow the session on the stream until it is in one of `states`, renewing the lease."""
+        with self.server.stream(self.rig) as socket_:
+            socket_.send(json.dumps({"type": "subscribe", "topics": ["session"]}))
+            for _ in range(60):
+                session = self._next(socket_)
+                if session is not None and session["state"] in states:
+                    return session
+                self.server.http.post(f"/rigs/{self.rig}/lease", json={"action": "renew"})
+        raise AssertionError(f"{self.session()['state']} is none of {states}")
+
+    @staticmethod
+    def _next(socket_: ClientConnection) -> dict[str, Any] | None:
+        try:
+            session: dict[str, Any] | None = json.loads(socket_.recv(timeout=1.0)).get("session")
+        except TimeoutError:
+            return None
+        return session
+
+    def to_idle(self) -> None:
+        """Bring the session to idle from wherever an earlier test left it."""
+        self.take()
+        for _ in range(100):
+            state = self.session()["state"]
+            match state:
+                case "idle":
+                    return
+                case "disconnected":
+                    answer = self.command("connect")
+                case "ready":
+                    answer = self.command("unload")
+                case "armed":
+                    answer = self.command("disarm")
+                case "estopped" | "faulted":
+                    self.command("acknowledge")
+                    answer = self.command("reset")
+                case _:
+                    self.server.http.post(f"/rigs/{self.rig}/stop")
+                    self.wait("armed", "faulted", "estopped")
+                    continue
+            if not answer.is_success:
+                time.sleep(0.1)  # not at rest yet
+                self.wait("idle", "ready", "disconnected", "armed", "estopped", "faulted")
+        raise AssertionError(f"no way to idle from {self.session()['state']}")
+
+
+@contextmanager
+def live_server(folder: Path, **overrides: Any) -> Iterator[LiveServer]:
+    settings = Settings(data_dir=folder, **overrides)
+    listener = bind("127.0.0.1", 0)
+    server = _Thread(settings, listener)
+    server.start()
+    try:
+        server.wait()
+        live = LiveServer(listener.getsockname()[1], settings)
+        with live.http:
+            yield live
+    finally:
+        server.end()
+
+
+class _Thread(threading.Thread):
+    def __init__(self, settings: Settings, listener: socket.socket) -> None:
+        super().__init__(name="live server")
+        self._settings, self._listener = settings, listener
+        self._ready = threading.Event()
+        self._server: uvicorn.Server | None = None
+        self._error: BaseException | None = None
+
+    def run(self) -> None:
+        try:
+            asyncio.run(self._main())
+        except BaseException as error:  # noqa: BLE001 - told to the test that waits
+            self._error = error
+        finally:
+            self._ready.set()
+
+    async def _main(self) -> None:
+        app = create_app(self._settings)
+        async with app.router.lifespan_context(app):
+            config = uvicorn.Config(app, lifespan="off", log_config=None, timeout_graceful_shutdown=2)
+            self._server = uvicorn.Server(config)
+            self._ready.set()
+            await self._server.serve(sockets=[self._listener])
+
+    def wait(self) -> None:
+        assert self._ready.wait(60.0)
+        if self._error is not None:
+            raise self._error
+
+    def end(self) -> None:
+        if self._server is not None:
+            self._server.should_exit = True
+        self.join(60.0)
+        self._listener.close()
+        if self._error is not None:
+            raise self._error

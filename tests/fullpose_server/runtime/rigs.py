@@ -1,0 +1,170 @@
+"""Flights and rig hosts for the tests of the rig process. Imported as `tests.fullpose_server.runtime.rigs`."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fullpose.attitude import quaternion_from_dcm
+from fullpose.kinematics import payload_attitudes
+from fullpose.rig import Rig, builtin_rigs
+from fullpose_server.formats.plan_folder import PlanFolder, make_plan, write_plan
+from fullpose_server.operating import GuardConfig, Tolerance
+from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.contract.messages import Reply, Snapshot
+from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.session.alarms import Alarm, Severity
+from fullpose_server.session.lease import LeaseToken
+
+
+def plan_of(
+    rig: Rig, seconds: float = 4.0, rate_hz: float = 1000.0, swing: float = 1.0, plan_id: str = "test"
+) -> PlanFolder:
+    """An exactly solved flight: the angles swing smoothly, and the flight's attitude is what they give.
+
+    A second of lead-in and lead-out; inside the built-in rigs' limits at `swing` 1.
+    """
+    ramp = round(rate_hz)
+    n = round(seconds * rate_hz) + 1
+    u = (np.arange(ramp) + 1.0) / (ramp + 1.0)
+    smooth = u**3 * (10.0 - 15.0 * u + 6.0 * u * u)
+    speed = np.concatenate([[0.0], smooth, np.ones(n), smooth[::-1], [0.0]])
+    t = np.cumsum(speed) / rate_hz
+    amplitude = swing * np.radians([40.0, 50.0, 35.0, 45.0])
+    hertz = np.array([0.2, 0.17, 0.25, 0.3])
+    angles = rig.home + amplitude * np.sin(2.0 * np.pi * hertz * t[:, None])
+    if not rig.geometry.redundant:
+        angles[:, 0] = 0.0
+    F = np.empty((len(angles), 3, 3))
+    payload_attitudes(rig.axes, angles, F)
+    return make_plan(
+        plan_id=plan_id,
+        rig=rig,
+        rate_hz=rate_hz,
+        angles=angles,
+        target=quaternion_from_dcm(F),
+        error=np.zeros(len(angles)),
+        lead_in_samples=ramp + 1,
+        lead_out_samples=ramp + 1,
+        trajectory_sha256="0" * 64,
+        method="test",
+        feasible=True,
+    )
+
+
+class Operator:
+    """Drives a host as a client does: takes the lease, counts the sequence."""
+
+    def __init__(self, host: RigHost, who: str = "operator") -> None:
+        self.host = host
+        self.who = who
+        self.epoch = 0
+        self.sequence = 0
+
+    async def take(self, action: str = "take") -> None:
+        lease = await self.host.lease(action, self.who)
+        self.epoch, self.sequence = lease.epoch, lease.sequence
+
+    async def say(self, command: str, **args: Any) -> Reply:
+        self.sequence += 1
+        return await self.host.command(command, args, self.who, LeaseToken(self.epoch, self.sequence))
+
+    async def must(self, command: str, **args: Any) -> Reply:
+        reply = await self.say(command, **args)
+        assert reply.ok, reply
+        return reply
+
+    async def arm(self, plan: Path) -> None:
+        """From disconnected to armed with `plan`."""
+        await self.take()
+        await self.must("connect")
+        await self.must("load", plan_folder=str(plan))
+        await self.must("arm")
+
+    async def fly(self, plan: Path) -> None:
+        """From disconnected to running, with `plan`."""
+        await self.arm(plan)
+        await self.must("start")
+        await self.until("running")
+
+    async def arm_live(self, **settings: Any) -> None:
+        """From disconnected to armed with a live source."""
+        await self.take()
+        await self.must("connect")
+        await self.must("load", live=settings)
+        await self.must("arm")
+
+    async def until(self, *states: str, seconds: float = 30.0) -> Snapshot:
+        """Wait for one of `states`, keeping the lease alive."""
+        deadline = asyncio.get_running_loop().time() + seconds
+        while True:
+            snapshot = self.host.snapshot()
+            if snapshot.state in states:
+                return snapshot
+            assert asyncio.get_running_loop().time() < deadline, f"still {snapshot.state}: {snapshot.alarms}"
+            if self.epoch and snapshot.lease.holder == self.who:
+                await self.host.lease("renew", self.who)
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self.host.wait_change(snapshot.revision), 0.2)
+
+    async def recover(self) -> None:
+        """Acknowledge and reset, once at rest."""
+        await self.must("acknowledge")
+        for _ in range(400):
+            reply = await self.say("reset")
+            if reply.ok:
+                return
+            assert reply.error is not None
+            assert reply.error.code == "not_at_rest", reply
+            await asyncio.sleep(0.01)
+        raise AssertionError("never at rest")
+
+
+# A starved machine is late, and its table lags. It is told in warnings; what is tested is seldom how much.
+PATIENT = GuardConfig(
+    following_deg=Tolerance(1.0, 15.0),
+    attitude_deg=Tolerance(1.0, 20.0),
+    lateness_ms=Tolerance(2.0, 500.0),
+    misses_per_s=Tolerance(20.0, None),
+)
+_STARVED = ("lateness", "missed_deadlines", "following_error", "attitude_error")
+
+
+def codes_of(alarms: Sequence[Alarm]) -> list[str]:
+    """The codes of `alarms`, but for the warnings of a starved machine."""
+    return [a.code for a in alarms if a.severity is not Severity.WARNING or a.code not in _STARVED]
+
+
+def config_of(tmp: Path, rig: str = "vertical-limited", **changes: Any) -> RigConfig:
+    """A rig process's settings under `tmp`."""
+    settings: dict[str, Any] = {
+        "realtime_priority": 40,
+        "min_free_mb": 1.0,
+        "exit_idle_s": 20.0,
+        "guard": PATIENT,
+    } | changes
+    return RigConfig("test", builtin_rigs()[rig], tmp / "rig", tmp / "runs", **settings)
+
+
+@contextlib.asynccontextmanager
+async def hosted(config: RigConfig) -> AsyncIterator[tuple[RigHost, Operator]]:
+    """A host with its rig process, ended afterwards."""
+    host = RigHost(config)
+    await host.start()
+    try:
+        yield host, Operator(host)
+    finally:
+        snapshot = host.snapshot()
+        if snapshot.health.rig_alive and snapshot.state in ("running", "held", "positioning", "live", "stopping"):
+            host.estop("test end")
+            await asyncio.sleep(2.0)
+        await host.close(stop_rig=True)
+
+
+def written(folder: Path, plan: PlanFolder) -> Path:
+    """`plan` on disk."""
+    write_plan(folder, plan)
+    return folder

@@ -1,0 +1,76 @@
+"""The server's end of the control socket, against the rig process's own."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.loop.control_server import ControlServer
+from fullpose_server.runtime.supervisor.control_link import MAX_REQUEST, ControlLink, RequestTooLargeError
+
+PATIENCE_S = 60.0
+
+
+@contextlib.asynccontextmanager
+async def linked(folder: Path) -> AsyncIterator[tuple[ControlLink, list[messages.Request]]]:
+    """A link to a polled server that says yes to everything, and what that server was asked."""
+    asked: list[messages.Request] = []
+
+    def answer(request: messages.Request) -> messages.Answer:
+        asked.append(request)
+        return messages.Answer(request.id, messages.Reply(True, "idle", "idle", 0))
+
+    async def poll() -> None:
+        while True:
+            server.poll()
+            await asyncio.sleep(0.001)
+
+    place = Place(folder)
+    server = ControlServer(place, answer)
+    polling = asyncio.create_task(poll())
+    link = ControlLink()
+    try:
+        await link.open(place)
+        yield link, asked
+    finally:
+        await link.close()
+        polling.cancel()
+        await asyncio.gather(polling, return_exceptions=True)
+        server.close()
+
+
+def filled(number: int, size: int) -> dict[str, Any]:
+    """Arguments with which `load`, as request `number`, takes `size` bytes."""
+    empty = messages.encode(messages.Request(number, "command", "ann", "load", {"live": ""}, None, "", None))
+    return {"live": "x" * (size - len(empty))}
+
+
+async def load(link: ControlLink, args: dict[str, Any]) -> messages.Answer:
+    return await link.request("command", "ann", timeout_s=PATIENCE_S, command="load", args=args)
+
+
+def test_a_request_of_the_greatest_size_is_read_whole(tmp_path: Path) -> None:
+    async def ask() -> None:
+        async with linked(tmp_path) as (link, asked):
+            args = filled(1, MAX_REQUEST)
+            assert (await load(link, args)).reply.ok
+            assert [request.args for request in asked] == [args]
+
+    asyncio.run(ask())
+
+
+def test_a_larger_request_is_refused_before_it_is_sent_and_the_link_stands(tmp_path: Path) -> None:
+    async def ask() -> None:
+        async with linked(tmp_path) as (link, asked):
+            with pytest.raises(RequestTooLargeError, match=f"load: {MAX_REQUEST + 1} bytes, .* at most {MAX_REQUEST}"):
+                await load(link, filled(1, MAX_REQUEST + 1))
+            assert link.open_for_requests
+            assert (await load(link, {})).reply.ok
+            assert [request.args for request in asked] == [{}]
+
+    asyncio.run(ask())

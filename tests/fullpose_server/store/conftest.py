@@ -1,0 +1,23 @@
+"""Stores in a folder of their own."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from fullpose_server.store.database import Database
+from fullpose_server.store.plans import PlanStore
+from fullpose_server.store.trajectories import TrajectoryStore
+from tests.fullpose_server.store.stores import Stores
+
+
+@pytest.fixture
+def stores(tmp_path: Path) -> Iterator[Stores]:
+    database = Database(tmp_path / "fullpose.db")
+    yield Stores(
+        database,
+        TrajectoryStore(database, tmp_path / "trajectories"),
+        PlanStore(database, tmp_path / "plans"),
+        tmp_path,
+    )
+    database.close()
