@@ -1,5 +1,6 @@
-"""Attitude conversions (mathematics, section 1). Angles [rad]; C is body from reference, passive: v_body = C v_reference.
+"""Attitude conversions (mathematics, section 1). Angles [rad].
 
+C is body from reference, passive: v_body = C v_reference.
 Reference axes: x forward (north), y up, z right (east). Body axes: x nose, y up, z right wing.
 """
 

@@ -151,7 +151,8 @@ def compare(
 # Of the methods that are not step methods; both claim the limits.
 SOURCES = {
     PLAN: "the planner: dynamic programming over both charts, then a smooth curve (mathematics, section 8)",
-    PREVIEW: "the exact step along a way re-planned over a horizon of known or predicted attitude (mathematics, section 9)",
+    PREVIEW: "the exact step along a way re-planned over a horizon of known or predicted attitude "
+    "(mathematics, section 9)",
 }
 
 

@@ -1,4 +1,4 @@
-"""Forward kinematics of the rigs: payload attitude, Jacobian, null vector, singularity measure (mathematics, section 2).
+"""Forward kinematics of the rigs: payload attitude, Jacobian, null vector, manipulability (mathematics, section 2).
 
 `axes` is `Rig.axes`; angles are d1..d4 [rad], base first. Rotations are passive: they carry vector components from
 the outer frame into the inner one.
@@ -80,8 +80,8 @@ def null_vector(J: Array, n: Array) -> float:
 def self_motion(horizontal: bool, d: Array, n: Array) -> float:
     """`null_vector` of the Jacobian of a four-axis rig in closed form, but for the sign. d (4,) [rad], n (4,).
 
-    n = (-cos d3, sin d2 sin d3, cos d2 cos d3, sin d2) / |..| of the vertical rig (mathematics, section 3); the horizontal
-    one's d2 counts the other way (see `charts`).
+    n = (-cos d3, sin d2 sin d3, cos d2 cos d3, sin d2) / |..| of the vertical rig (mathematics, section 3);
+    the horizontal one's d2 counts the other way (see `charts`).
     """
     s2 = math.sin(d[1])
     c3 = math.cos(d[2])

@@ -1,4 +1,6 @@
-"""`clamped`: clamping weighted least norm: a frame at its limit is locked, the others are re-solved (mathematics, section 7).
+"""`clamped`: clamping weighted least norm: a frame at its limit is locked, the others are re-solved.
+
+mathematics, section 7.
 
 Source: Huang 2014. The least-norm step is taken; the frame that leaves its range by most is put on the bound and locked
 (its inverse weight zero), and the step is taken again by the frames still free, with what the locked ones contribute

@@ -1,4 +1,6 @@
-"""`lagrange`: the equality-constrained step by Lagrange multipliers, open loop, without limits (mathematics, section 7).
+"""`lagrange`: the equality-constrained step by Lagrange multipliers, open loop, without limits.
+
+mathematics, section 7.
 
 Source: Xu 2016, the baseline of Zhao 2025. Minimise 1/2 (x - d)^T W (x - d) subject to J (x - d) = w dt; setting the
 derivatives of the Lagrangian to zero gives x = d + W^-1 J^T (J W^-1 J^T)^-1 w dt.

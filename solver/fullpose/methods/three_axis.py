@@ -1,4 +1,6 @@
-"""`three_axis`: the Euler angles themselves, to show the singularity that the fourth axis removes (mathematics, section 7).
+"""`three_axis`: the Euler angles themselves, to show the singularity that the fourth axis removes.
+
+mathematics, section 7.
 
 Source: the vertical (yaw, pitch, roll) and horizontal (pitch, yaw, roll) three-axis tables that Zhao 2025 and Lin 2022
 compare with (mathematics, section 2); singular where the second angle is +-90 deg. A four-axis rig is used as one by
