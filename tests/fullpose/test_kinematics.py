@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from bench.mjcf import mjcf
 from fullpose.attitude import euler_from_dcm
 from fullpose.kinematics import (
     four_axis_pose,
@@ -21,7 +20,8 @@ from fullpose.kinematics import (
     self_motion,
     singularity_measure,
 )
-from fullpose.rig import FRAMES, Rig, builtin_rigs
+from fullpose.rig import Rig, builtin_rigs
+from tests.support.mujoco_rig import PAYLOAD, mujoco_rig
 
 RIGS = builtin_rigs()
 FOUR = ("vertical-4", "horizontal-4")
@@ -57,9 +57,9 @@ def test_ten_thousand_poses_against_scipy(name: str) -> None:
 @pytest.mark.parametrize("name", FOUR)
 def test_ten_thousand_poses_against_mujoco(name: str) -> None:
     rig = RIGS[name]
-    model = mujoco.MjModel.from_xml_string(mjcf(rig))
+    model = mujoco_rig(rig)
     data = mujoco.MjData(model)
-    inner = model.body(FRAMES[3]).id
+    inner = model.body(PAYLOAD).id
     worst = 0.0
     for d in np.random.default_rng(3).uniform(-np.pi, np.pi, (10_000, 4)):
         data.qpos[:] = d

@@ -48,7 +48,7 @@ class Breadth:
     acceleration_cost: float
 
 
-# Measured (python -m bench.plan_known): what one of them misses the next ones mostly find.
+# Measured (python -m bench.numerics.plan_known): what one of them misses the next ones mostly find.
 BREADTHS = (Breadth(1000, 5, 1.0), Breadth(4000, 9, 0.1), Breadth(4000, 9, 1.0))
 
 

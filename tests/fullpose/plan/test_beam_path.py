@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.plan_known import known_path, rig_of
 from fullpose.errors import CancelledError
+from fullpose.flyable import flyable_path, rig_of
 from fullpose.plan import PlanOptions, plan
 from fullpose.plan.beam_path import BREADTHS, attainable_rates, first_poses, inertial_chain
 from fullpose.rig import Geometry
@@ -27,7 +27,7 @@ PLAIN = PlanOptions(best_effort=False)
 )
 def test_a_flight_that_is_known_to_be_flyable_is_flown(name, geometry, share, seed):
     rig = rig_of(name, Geometry(geometry))
-    t, x = known_path(seed, rig, share, 4.0, 500.0)
+    t, x = flyable_path(seed, rig, share, 4.0, 500.0)
     assert verify(t, x, rig).violations == ()
     C = payload_attitudes(rig, x)
     made = plan(t, C, rig, options=PLAIN)
@@ -39,7 +39,7 @@ def test_a_flight_that_is_known_to_be_flyable_is_flown(name, geometry, share, se
 
 def stages(name="multi", seed=1, duration=4.0):
     rig = rig_of(name, Geometry.VERTICAL_4)
-    t, x = known_path(seed, rig, 0.5, duration, 100.0)
+    t, x = flyable_path(seed, rig, 0.5, duration, 100.0)
     samples = stage_samples(t, 0.05)
     return rig, t[samples], np.ascontiguousarray(payload_attitudes(rig, x)[samples])
 

@@ -28,9 +28,9 @@ from fullpose_server.runtime.live.packets import (
     encode_sample,
 )
 from fullpose_server.runtime.supervisor.rig_client import RigHost
+from tests.fullpose_server.runtime import rigs
 from tests.fullpose_server.runtime.rigs import config_of, hosted
 from tests.fullpose_server.runtime.supervisor.test_rig_client import within_limits
-from tests.server.runtime import rigs
 
 NAN = math.nan
 # The machine of the tests may starve the sender: bridge longer than on a quiet one.

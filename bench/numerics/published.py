@@ -1,4 +1,4 @@
-"""The papers' figures, measured on our runs: python -m bench.published
+"""The papers' figures, measured on our runs: python -m bench.numerics.published
 
 Prints what docs/guide/methods.md sets beside the published numbers. The flights are ours (`fullpose.scenarios`), the
 papers' not being at hand; where an amplitude or a rule matters, it is varied.

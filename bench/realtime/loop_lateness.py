@@ -1,6 +1,6 @@
 """Lateness of the rig loop at 1 kHz beside viewers, an upload and a planning job, next to a bare loop in the same run.
 
-    python -m bench.loop_lateness [--seconds 60] [--viewers 200]
+    python -m bench.realtime.loop_lateness [--seconds 60] [--viewers 200]
 
 Prints one table: a bare SCHED_FIFO loop that only sleeps to its deadlines, then the rig process in a flight with
 real-time scheduling, then the same without it; each alone and under load.
@@ -17,11 +17,11 @@ from pathlib import Path
 import numpy as np
 
 from bench.machine import machine
-from bench.rig_load import loaded, post, served
+from bench.realtime.operator import Operator, write_swing
+from bench.realtime.rig_load import loaded, post, served
 from fullpose.rig import builtin_rigs
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.supervisor.rig_client import RigHost
-from tests.fullpose_server.runtime.rigs import Operator, plan_of, written
 
 RIG = "vertical-4"
 BARE = """
@@ -55,12 +55,8 @@ def bare(seconds: float) -> np.ndarray:
 
 async def fly(host: RigHost, plan: Path, seconds: float) -> tuple[np.ndarray, int]:
     """Lateness [us] and deadlines missed over `seconds` of the loop, flying."""
-    operator = Operator(host, "bench")
-    await operator.take("takeover")
-    if host.snapshot().state == "disconnected":
-        await operator.must("connect")
-    await operator.must("load", plan_folder=str(plan))
-    await operator.must("arm")
+    operator = Operator(host)
+    await operator.arm(plan_folder=str(plan))
     await operator.must("start")
     await operator.until("running")
     missed = host.snapshot().health.deadline_misses
@@ -89,7 +85,7 @@ async def measure(seconds: float, viewers: int) -> None:
     rig = builtin_rigs()[RIG]
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
-        plan = written(root / "plan", plan_of(rig, seconds + 20.0))
+        plan = write_swing(root / "plan", rig, seconds + 20.0)
         print(machine())
         print(f"{'':44s} {'p50':>8s} {'p99':>8s} {'p99.9':>8s} {'max us':>9s} {'missed':>7s} {'ticks':>8s}", flush=True)
         late = bare(seconds)

@@ -1,6 +1,6 @@
 """From the E-stop request, over HTTP and over the stream's WebSocket, to the first braking command.
 
-    python -m bench.estop_latency [--times 100] [--viewers 200]
+    python -m bench.realtime.estop_latency [--times 100] [--viewers 200]
 
 The rig moves. The clock starts before the request is sent, over HTTP before the connection is opened, and ends when
 the loop has written the first braking command to the drive (the loop notes the time in shared memory). The same for
@@ -21,12 +21,12 @@ from pathlib import Path
 import numpy as np
 
 from bench.machine import machine
-from bench.rig_load import Viewer, loaded, post, served
+from bench.realtime.operator import Operator, write_swing
+from bench.realtime.rig_load import Viewer, loaded, post, served
 from fullpose.rig import builtin_rigs
 from fullpose_server.cli._event_loop import before_others
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.supervisor.rig_client import RigHost
-from tests.fullpose_server.runtime.rigs import Operator, plan_of, written
 
 RIG = "vertical-4"
 
@@ -61,12 +61,8 @@ class OpenStream:
 
 async def stop_once(host: RigHost, plan: Path, over: Callable[[], None], sign: float) -> float:
     """Milliseconds from the request to the first braking command, in the middle of a move."""
-    operator = Operator(host, "bench")
-    await operator.take("takeover")
-    if host.snapshot().state == "disconnected":
-        await operator.must("connect")
-    await operator.must("load", plan_folder=str(plan))
-    await operator.must("arm")
+    operator = Operator(host)
+    await operator.arm(plan_folder=str(plan))
     pose = host.snapshot().pose_deg
     await operator.must("move", target_deg=[v + sign * 300.0 for v in pose])
     await asyncio.sleep(0.4)
@@ -101,7 +97,7 @@ async def measure(times: int, viewers: int) -> None:
     rig = builtin_rigs()[RIG]
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
-        plan = written(root / "plan", plan_of(rig, 1.0))
+        plan = write_swing(root / "plan", rig, 1.0)
         print(machine())
         print(f"{'request to first braking command [ms]':44s} {'p50':>8s} {'p99':>8s} {'max':>8s} {'times':>6s}")
         with served(root / "data") as port:

@@ -1,21 +1,14 @@
-"""Flights that are flyable by construction, at a share of the limits: python -m bench.plan_known [seeds] [seconds]
+"""Flights that are flyable by construction: frame paths of a few random sines, and the rigs they are made for.
 
-Frame paths of a few random sines, scaled until every rate and acceleration is at most a share of its limit and every
-range holds them; the flight is where they point the payload. `plan` is told the flight alone and should fly it.
+Scaled until every rate and acceleration is at most a share of its limit and every range holds them; the flight is where
+they point the payload. Oracles for a planner: it is told the flight alone, and a path is known to exist.
 """
-
-import sys
-import time as clock
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.machine import machine
-from fullpose.plan import PlanOptions, plan
 from fullpose.rig import FrameLimits, Geometry, Rig
-from fullpose.verify import payload_attitudes, verify
 
-Array = NDArray[np.float64]
 DEG = np.pi / 180.0
 # min, max, rate, acceleration [deg, deg/s, deg/s^2] of base, outer, middle, inner
 Frames = tuple[tuple[float, float, float, float], ...]
@@ -35,7 +28,9 @@ def rig_of(name: str, geometry: Geometry) -> Rig:
     return Rig(name, geometry, (frames[0], frames[1], frames[2], frames[3]))
 
 
-def known_path(seed: int, rig: Rig, share: float, duration: float, hz: float) -> tuple[Array, Array]:
+def flyable_path(
+    seed: int, rig: Rig, share: float, duration: float, hz: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(time (n,) [s], angles (n, 4) [rad]) with rates and accelerations at most `share` of their limits."""
     random = np.random.default_rng(seed)
     t = np.arange(round(duration * hz) + 1) / hz
@@ -59,31 +54,3 @@ def known_path(seed: int, rig: Rig, share: float, duration: float, hz: float) ->
         else:
             x[:, i] = y * scale + random.uniform(-np.pi, np.pi)
     return t, x
-
-
-def main(seeds: int, duration: float) -> None:
-    """Print the counts and the processor time."""
-    print(machine())
-    for name in RIGS:
-        for share in (0.5, 0.7, 0.9):
-            flown, known, longest = 0, 0, 0.0
-            for geometry in (Geometry.VERTICAL_4, Geometry.HORIZONTAL_4):
-                rig = rig_of(name, geometry)
-                for seed in range(seeds):
-                    t, x = known_path(seed, rig, share, duration, 500.0)
-                    if verify(t, x, rig).violations:  # the ends of the sums of sines are not scaled to
-                        continue
-                    known += 1
-                    begin = clock.process_time()
-                    made = plan(t, payload_attitudes(rig, x), rig, options=PlanOptions(best_effort=False))
-                    longest = max(longest, clock.process_time() - begin)
-                    flown += made.verdict.feasible
-            print(
-                f"{name:9s} {share:.1f} of the limits: flown {flown} of {known}, {longest:.1f} s at the longest",
-                flush=True,
-            )
-
-
-if __name__ == "__main__":
-    arguments = sys.argv[1:]
-    main(int(arguments[0]) if arguments else 6, float(arguments[1]) if len(arguments) > 1 else 4.0)

@@ -1,4 +1,4 @@
-"""The planner against a search over all pairs of nodes, every range cut: python -m bench.plan_exhaustive
+"""The planner against a search over all pairs of nodes, every range cut: python -m bench.numerics.plan_exhaustive
 
 No windows, no turn bookkeeping: every node is repeated for every turn its ranges hold, and every pair of neighbouring
 stages is tried under the rate limits. A flight with a chain that `plan` does not fly would be a miss.
@@ -9,8 +9,8 @@ import sys
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.flights import rigs
 from bench.machine import machine
+from bench.numerics.flights import rigs
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.plan import PlanOptions, plan
 from fullpose.rig import Rig

@@ -1,4 +1,4 @@
-"""The quadratic programmes of the refinement, by every maintained solver: python -m bench.plan_solvers
+"""The quadratic programmes of the refinement, by every maintained solver: python -m bench.numerics.plan_solvers
 
 The programmes are collected from the first iterations of planning random flights; each is solved from nothing, set-up
 included, to the same tolerance, and its answer's violation and cost are compared with the most exact one's.

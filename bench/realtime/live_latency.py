@@ -1,6 +1,6 @@
 """Live source at 1 kHz on loopback: sample to reply, and whether the rig process's memory stays flat.
 
-    python -m bench.live_latency [--seconds 60] [--way udp|websocket]        (600 for the soak)
+    python -m bench.realtime.live_latency [--seconds 60] [--way udp|websocket]        (600 for the soak)
 
 Round trip: from before the send to after the reply's arrival, the wait for the loop's next tick included. Latency: the
 loop's own figure, from the sample's arrival in the rig process to the reply. By WebSocket the samples go through a
@@ -22,7 +22,8 @@ import numpy as np
 from websockets.sync.client import connect
 
 from bench.machine import machine
-from bench.rig_load import served
+from bench.realtime.operator import Operator
+from bench.realtime.rig_load import served
 from fullpose.rig import builtin_rigs
 from fullpose_server.client import Client
 from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
@@ -35,7 +36,6 @@ from fullpose_server.runtime.live.packets import (
     encode_sample,
 )
 from fullpose_server.runtime.supervisor.rig_client import RigHost
-from tests.fullpose_server.runtime.rigs import Operator
 
 RIG = "vertical-4"
 
@@ -142,11 +142,8 @@ async def by_udp(seconds: float) -> None:
         rig = builtin_rigs()[RIG]
         host = RigHost(RigConfig("live", rig, root / "rig", root / "runs", live=live, min_free_mb=1.0))
         await host.start()
-        operator = Operator(host, "bench")
-        await operator.take()
-        await operator.must("connect")
-        await operator.must("load", live={"method": "exact"})
-        await operator.must("arm")
+        operator = Operator(host)
+        await operator.arm(live={"method": "exact"})
         await operator.must("go_live")
         source = Source(Udp(port), seconds)
         memory = await followed(source, host.snapshot().health.rig_pid, lambda: host.lease("renew", "bench"))

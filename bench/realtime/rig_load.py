@@ -1,7 +1,7 @@
 """Load for the rig benchmarks: stream viewers, uploads and planning jobs against a real `fullpose serve`.
 
-`python -m bench.rig_load --port P --rig R --viewers N --seconds S [--upload] [--plan]` is the load, a process that
-costs little beside what the server does for it. Viewers are plain sockets that count frames and look into none.
+`python -m bench.realtime.rig_load --port P --rig R --viewers N --seconds S [--upload] [--plan]` is the load, a process
+that costs little beside what the server does for it. Viewers are plain sockets that count frames and look into none.
 Uploads (100 MB each) and planning jobs follow one another without a pause for as long as it runs.
 """
 
@@ -67,7 +67,7 @@ def served(data: Path) -> Iterator[int]:
 @contextlib.contextmanager
 def loaded(port: int, rig: str, viewers: int, seconds: float, *, upload: bool, plan: bool) -> Iterator[None]:
     """Viewers, and where asked uploads and planning jobs, for at most `seconds`; ended with the block."""
-    command = [sys.executable, "-m", "bench.rig_load", "--port", str(port), "--rig", rig]
+    command = [sys.executable, "-m", "bench.realtime.rig_load", "--port", str(port), "--rig", rig]
     command += ["--viewers", str(viewers), "--seconds", str(seconds)]
     command += [*(["--upload"] if upload else []), *(["--plan"] if plan else [])]
     process = subprocess.Popen(command, stdin=subprocess.PIPE)

@@ -1,11 +1,11 @@
-"""The papers' figures, redrawn from our runs into docs/guide/figures: python -m bench.figures"""
+"""The papers' figures, redrawn from our runs into docs/guide/figures: python -m bench.numerics.figures"""
 
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 
-from bench.published import CLOSED, EXACT, PAPER, POSITION_ONLY, RIGS, run
+from bench.numerics.published import CLOSED, EXACT, PAPER, POSITION_ONLY, RIGS, run
 from fullpose.rig import FRAMES
 from fullpose.scenarios import SCENARIOS
 from fullpose.solution import Solution
@@ -25,7 +25,7 @@ mpl.rcParams.update(
 )
 from matplotlib import pyplot as plt  # noqa: E402  the backend is chosen first
 
-FOLDER = Path(__file__).parents[1] / "docs" / "guide" / "figures"
+FOLDER = Path(__file__).parents[2] / "docs" / "guide" / "figures"
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")
 POINTS = 800
 

@@ -1,6 +1,6 @@
 """How the planner scales: seconds of planning and memory against the length of the flight.
 
-    python -m bench.plan_length [seconds ...]
+    python -m bench.numerics.plan_length [seconds ...]
 
 Memory is the process's largest resident size less what it had with the flight's arrays, and less the results'.
 """

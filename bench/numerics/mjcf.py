@@ -1,4 +1,4 @@
-"""The rigs as MuJoCo models: the peers' benchmark runs on them, and the tests use them as an oracle."""
+"""The rigs as MuJoCo models: the peers' benchmark runs on them."""
 
 from fullpose.rig import FRAMES, Rig
 

@@ -1,13 +1,13 @@
 """Every method's step beside mink's and pink's, on the same flights in the same run; and the limits on many flights.
 
-    python -m bench.methods [--scenarios small_angles,over_limit,...] [--methods exact,alm,...] [--peers mink,pink]
-    python -m bench.methods --random 1000            # the methods that claim limits, on seeded random flights
+    python -m bench.numerics.methods [--scenarios small_angles,...] [--methods exact,alm,...] [--peers mink,pink]
+    python -m bench.numerics.methods --random 1000            # the methods that claim limits, on seeded random flights
 
 The first prints, for each scenario: median and 99th percentile of the step, its ratio to mink's with the quickest
 solver, share of exact samples, largest error, samples beyond a limit, iterations (of a peer: steps without a solution),
 peak acceleration. A method may carry one option: alm:mode=open_loop. The second prints the largest excess over each
-kind of limit and how many flights were flown exactly. Steps are timed in blocks of 16 samples, peers (`bench.peers`)
-one by one; `bench.step_time` has ours one by one too.
+kind of limit and how many flights were flown exactly. Steps are timed in blocks of 16 samples, peers
+(`bench.numerics.peers`) one by one; `bench.numerics.step_time` has ours one by one too.
 """
 
 import argparse
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.machine import machine
-from bench.peers import PEERS, race
+from bench.numerics.peers import PEERS, race
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.compare import EXACT_WITHIN
 from fullpose.errors import SolverError

@@ -1,8 +1,8 @@
 """Share of random full-attitude flights that `preview` flies exactly inside every limit, against the preview it has.
 
-    python -m bench.preview --flights 40 [--rates 60] [--previews 0,0.1,0.5,1,2] [--rigs vertical-limited,...]
-    python -m bench.preview --flights 10 --delay 0.05 --plan 1
-    python -m bench.preview --timing
+    python -m bench.numerics.preview --flights 40 [--rates 60] [--previews 0,0.1,0.5,1,2] [--rigs vertical-limited,...]
+    python -m bench.numerics.preview --flights 10 --delay 0.05 --plan 1
+    python -m bench.numerics.preview --timing
 
 Seeded flights of 20 s (`fullpose.scenarios.random_flight`); a flight counts where no sample is limited, the error of
 every sample is below 1e-9 deg and the independent check finds no violation. Beside it `exact` and, with --plan 1,

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.mjcf import mjcf
+from bench.numerics.mjcf import mjcf
 from fullpose.rig import FRAMES, Rig
 
 Array = NDArray[np.float64]

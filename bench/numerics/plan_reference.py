@@ -1,4 +1,4 @@
-"""Peaks of the plan beside a slower, denser one of the same cost: python -m bench.plan_reference [flights]
+"""Peaks of the plan beside a slower, denser one of the same cost: python -m bench.numerics.plan_reference [flights]
 
 The reference: nodes every quarter degree, stages 25 ms apart, knots 12.5 ms apart, thirty iterations, no windows.
 A peak is the largest share of its limit that any frame takes, rates and accelerations apart.

@@ -1,6 +1,7 @@
-"""Share of flights flown exactly inside all limits, by every method: python -m bench.flights [options]
+"""Share of flights flown exactly inside all limits, by every method: python -m bench.numerics.flights [options]
 
-    python -m bench.flights --seeds 24 --previews 5 --out docs/guide/flights.md --plot docs/guide/figures/flights.svg
+    python -m bench.numerics.flights --seeds 24 --previews 5 --out docs/guide/flights.md
+        --plot docs/guide/figures/flights.svg
 
 Random flights through all attitudes, 20 s at 500 Hz, at three body rates on three rigs (`--seeds` of each: 24 make
 216), and the flights of examples/flights. A flight is flown when every sample is exact (1e-9 deg) and `fullpose.verify`
@@ -36,7 +37,7 @@ EXACT = np.radians(1e-9)
 RATES = (30.0, 60.0, 120.0)  # [deg/s] of the body, root mean square
 PREVIEWS = (0.0, 0.1, 0.5, 1.0, 2.0)  # [s]
 DURATION, SAMPLE_RATE = 20.0, 500.0
-EXAMPLES = Path(__file__).parents[1] / "examples" / "flights"
+EXAMPLES = Path(__file__).parents[2] / "examples" / "flights"
 
 
 def rigs() -> dict[str, Rig]:
@@ -207,7 +208,7 @@ def main() -> None:
     print(text)
     print(f"{machine()}, {clock.perf_counter() - begin:.0f} s")
     if chosen.out:
-        command = f"python -m bench.flights --seeds {chosen.seeds} --previews {chosen.previews}"
+        command = f"python -m bench.numerics.flights --seeds {chosen.seeds} --previews {chosen.previews}"
         chosen.out.write_text(HEAD.format(command=command, machine=machine(), limits=limits_text()) + text)
     if chosen.plot:
         plot(results, chosen.plot)

@@ -1,11 +1,11 @@
 """Median time of one step, ours beside mink's, on the same real flight in the same run.
 
-    python -m bench.step_time [--flight examples/flights/loop.csv] [--rig vertical-4] [--methods exact,alm,lagrange]
+    python -m bench.numerics.step_time [--flight F.csv] [--rig vertical-4] [--methods exact,alm,lagrange]
 
 Ours: `solve()` at 1 kHz, the clock read every 16 samples; "one a call": the stepper called sample by sample, as a live
-session does, where the call from Python is most of it. mink: see `bench.peers`; it is always called sample by sample,
-for it has no other way. It has no acceleration limit and no exact end, so its error is printed too. `--cold` adds the
-seconds that a fresh machine compiles for: one short solve with an empty cache, in a process of its own.
+session does, where the call from Python is most of it. mink: see `bench.numerics.peers`; it is always called sample by
+sample, for it has no other way. It has no acceleration limit and no exact end, so its error is printed too. `--cold`
+adds the seconds that a fresh machine compiles for: one short solve with an empty cache, in a process of its own.
 """
 
 import argparse
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.machine import machine
-from bench.peers import race
+from bench.numerics.peers import race
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
 from fullpose.methods import METHODS
 from fullpose.resample import resample

@@ -1,6 +1,6 @@
 """Cost against the length of the flight: is it linear, and is memory bounded?
 
-    python -m bench.flight_length [--methods exact,alm,...] [--seconds 10,100,1000] [--rig vertical-4]
+    python -m bench.numerics.flight_length [--methods exact,alm,...] [--seconds 10,100,1000] [--rig vertical-4]
 
 Each case is a process of its own, so that its peak memory is its own: random flight at 1 kHz, solve, and what was there
 before the solve taken off. A method that holds a fixed number of arrays grows by a fixed number of bytes a sample.
@@ -30,7 +30,16 @@ def main() -> None:
     print(f"{'':22}{'seconds':>9}{'samples':>10}{'solve s':>10}{'us/sample':>11}{'MB more':>10}{'B/sample':>10}")
     for method in arguments.methods.split(","):
         for seconds in arguments.seconds.split(","):
-            command = [sys.executable, "-m", "bench.flight_length", "--rig", arguments.rig, "--case", method, seconds]
+            command = [
+                sys.executable,
+                "-m",
+                "bench.numerics.flight_length",
+                "--rig",
+                arguments.rig,
+                "--case",
+                method,
+                seconds,
+            ]
             done = subprocess.run(command, check=True, capture_output=True, text=True)
             found = json.loads(done.stdout)
             n = found["samples"]
