@@ -41,7 +41,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples" / "flights"
 
 
 def rigs() -> dict[str, Rig]:
-    """The three limit sets: METHODS' on both geometries, and one with every range cut and half the accelerations."""
+    """The limit set of mathematics, section 8 on both geometries; one with cut ranges, half the accelerations."""
     limited = builtin_rigs()["vertical-limited"]
     spans = (300.0, 170.0, 120.0, 60.0)
     narrow = tuple(

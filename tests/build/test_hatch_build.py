@@ -2,9 +2,7 @@
 
 import importlib.util
 import shutil
-import subprocess
 import sys
-import zipfile
 from pathlib import Path
 from types import ModuleType
 
@@ -109,24 +107,6 @@ def test_hook_asks_for_node_only_where_it_must_build(tree: Path, no_node: None) 
     (tree / "web" / "src" / "main.ts").write_text("changed")
     assert asked("wheel") == [hatch_build.NODE_PACKAGE]
     assert asked("sdist") == []
-
-
-def test_wheel_holds_the_console_and_not_its_sources(tmp_path: Path) -> None:
-    tree = tmp_path / "tree"
-    tree.mkdir()
-    for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, tree)
-    for name in ("solver", "server", "web"):
-        shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("node_modules", "__pycache__"))
-    assert hatch_build.Console(tree).fresh(), "the console is behind its sources: run tools/setup"
-    subprocess.run(
-        [sys.executable, "-m", "hatchling", "build", "-t", "wheel"], cwd=tree, check=True, capture_output=True
-    )
-    (wheel,) = (tree / "dist").glob("*.whl")
-    names = zipfile.ZipFile(wheel).namelist()
-    assert "fullpose_server/console/index.html" in names
-    assert any(name.startswith("fullpose_server/console/assets/") and name.endswith(".js") for name in names)
-    assert not any(name.startswith("web/") or name.endswith((".nbi", ".nbc")) for name in names)
 
 
 def test_lock_file_names_no_registry() -> None:
