@@ -11,7 +11,7 @@ import pytest
 from fullpose_server.errors import TransitionError
 from fullpose_server.formats.plan_folder import read_plan
 from fullpose_server.planning.plan_queue import PlanQueue
-from tests.fullpose_server.store.stores import Stores
+from tests.support.stores import Stores
 
 SLOW = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(
     f"{k / 10},{20 * np.sin(k / 20)},{10 * np.sin(k / 30)},{5 * np.sin(k / 25)}\n" for k in range(301)

@@ -10,7 +10,7 @@ from fullpose_server.errors import InUseError, NotFoundError
 from fullpose_server.formats.trajectory import Convention
 from fullpose_server.formats.trajectory_file import read_trajectory
 from fullpose_server.store.trajectories import TrajectoryStore
-from tests.fullpose_server.store.stores import Stores
+from tests.support.stores import Stores
 
 FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 100},{k / 10},{k / 20},0\n" for k in range(101))
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 from fullpose_server.formats.plan_folder import read_plan, write_plan
-from fullpose_server.runtime import warm
+from fullpose_server.runtime.loop import prewarm
 from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
 from fullpose_server.runtime.motion.limit_guard import Guard
 from fullpose_server.runtime.live.source import LiveSource

@@ -8,7 +8,7 @@ import pytest
 from fullpose_server.store.database import Database
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.trajectories import TrajectoryStore
-from tests.fullpose_server.store.stores import Stores
+from tests.support.stores import Stores
 
 
 @pytest.fixture
