@@ -16,11 +16,10 @@ from pathlib import Path
 
 import jsbsim
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.attitude import quaternion_from_dcm
 
-Array = NDArray[np.float64]
 STEP_HZ = 400  # JSBSim's integration
 RATE_HZ = 200  # the rows written
 REPOSITORY = Path(__file__).parents[1]

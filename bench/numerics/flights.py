@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.machine import machine
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.errors import SolverError
 from fullpose.methods import METHODS
@@ -32,7 +32,6 @@ from fullpose.verify import verify
 from fullpose_server.formats.trajectory import Convention
 from fullpose_server.formats.trajectory_file import read_trajectory
 
-Array = NDArray[np.float64]
 EXACT = np.radians(1e-9)
 RATES = (30.0, 60.0, 120.0)  # [deg/s] of the body, root mean square
 PREVIEWS = (0.0, 0.1, 0.5, 1.0, 2.0)  # [s]

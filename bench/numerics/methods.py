@@ -17,10 +17,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.machine import machine
 from bench.numerics.peers import PEERS, race
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.compare import EXACT_WITHIN
 from fullpose.errors import SolverError
@@ -30,7 +30,6 @@ from fullpose.scenarios import DEG, SCENARIOS, random_flight
 from fullpose.solve import solve
 from fullpose.verify import attitude_errors, differences, payload_attitudes, verify
 
-Array = NDArray[np.float64]
 DEFAULT = "small_angles,large_no_limit,over_limit,both_beyond_90"
 HEAD = ("median us", "p99 us", "x of mink", "exact %", "error deg", "matrix", "beyond", "iterations", "peak deg/s2")
 PEER_SAMPLES = 3000  # of each flight: a peer's step takes a hundred of ours

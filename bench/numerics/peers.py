@@ -13,12 +13,10 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.numerics.mjcf import mjcf
+from fullpose._typing import Array
 from fullpose.rig import FRAMES, Rig
-
-Array = NDArray[np.float64]
 
 # (seconds of each step (n,), nan where it had no solution, angles (n, 4) [rad], how many had none: the pose was kept)
 Run = tuple[Array, Array, int]

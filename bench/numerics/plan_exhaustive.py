@@ -7,10 +7,10 @@ stages is tried under the rate limits. A flight with a chain that `plan` does no
 import sys
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.machine import machine
 from bench.numerics.flights import rigs
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.plan import PlanOptions, plan
 from fullpose.rig import Rig
@@ -19,7 +19,6 @@ from fullpose.trajectory.nodes import lattice
 from fullpose.trajectory.shortest_path import Programme
 from fullpose.trajectory.windows import stage_samples
 
-Array = NDArray[np.float64]
 GRID = np.radians(3.0)
 DURATION = 20.0
 

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.machine import machine
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.compare import EXACT_WITHIN
 from fullpose.plan import PreviewFlight, PreviewOptions, PreviewStepper
@@ -27,7 +28,6 @@ from fullpose.scenarios import DEG, random_flight
 from fullpose.solve import solve
 from fullpose.verify import attitude_errors, payload_attitudes, verify
 
-Array = NDArray[np.float64]
 SECONDS = 20.0
 
 

@@ -7,7 +7,6 @@ papers' not being at hand; where an amplitude or a rule matters, it is varied.
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.machine import machine
 from fullpose.attitude import dcm_from_quaternion
@@ -20,7 +19,6 @@ from fullpose.solution import Solution
 from fullpose.solve import solve
 from fullpose.verify import attitude_errors, payload_attitudes, verify
 
-Array = NDArray[np.float64]
 RIGS = builtin_rigs()
 # The papers' rigs have position limits only.
 POSITION_ONLY = Rig(

@@ -17,10 +17,10 @@ import time
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.machine import machine
 from bench.numerics.peers import race
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
 from fullpose.methods import METHODS
 from fullpose.resample import resample
@@ -28,7 +28,6 @@ from fullpose.rig import Rig, builtin_rigs
 from fullpose.solve import solve
 from fullpose.verify import attitude_errors, payload_attitudes, verify
 
-Array = NDArray[np.float64]
 RATE_HZ = 1000.0
 SINGLE_SAMPLES = 5000  # of the flight, for the peers and for ours one a call
 COLD = """

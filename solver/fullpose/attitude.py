@@ -5,9 +5,9 @@ Reference axes: x forward (north), y up, z right (east). Body axes: x nose, y up
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from fullpose._typing import Array
 
 
 def dcm_from_euler(yaw: ArrayLike, pitch: ArrayLike, roll: ArrayLike) -> Array:

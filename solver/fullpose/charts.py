@@ -9,11 +9,10 @@ which takes y to z and z to -y, so that its d2 counts the other way.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import inlined, inner
+from fullpose._typing import Array
 
-Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fullpose._typing import Array, Integers
 from fullpose.errors import MethodError
 from fullpose.methods import METHODS
 from fullpose.registry import method_options, parse_variant
@@ -17,8 +18,6 @@ from fullpose.solution import Solution, limited_name
 from fullpose.solve import PLAN, PREVIEW, check_flight, solve
 from fullpose.variant import Variant
 from fullpose.verify import Verification, verify
-
-Array = NDArray[np.float64]
 
 # A sample is exact within 1e-9 deg: a hundred times the rounding of the geodesic error, far below any encoder.
 EXACT_WITHIN = np.deg2rad(1e-9)
@@ -44,7 +43,7 @@ class Figures:
     max_error: float  # [rad]
     rms_error: float  # [rad]
     max_matrix_error: float
-    violations: NDArray[np.int64]  # (4, 3) samples beyond each limit
+    violations: Integers  # (4, 3) samples beyond each limit
     peaks: Array  # (4, 3) largest magnitudes [rad, rad/s, rad/s^2]
     total_variation: Array  # (4,) [rad] the way each frame turned
     failures: tuple[Failure, ...]  # the most samples first

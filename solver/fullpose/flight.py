@@ -1,9 +1,8 @@
 """The times [s] that a flight may have: increasing, and in a range where rates and accelerations stay numbers."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from fullpose._typing import Array
 
 FARTHEST = 1e10  # [s] from zero: three centuries, so that seconds since 1970 are inside and nanoseconds are not
 SHORTEST_STEP = 1e-7  # [s]; a lead at this interval is still short enough to be had

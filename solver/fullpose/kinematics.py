@@ -6,12 +6,8 @@ the outer frame into the inner one.
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fullpose._jit import inlined, inner, kernel
-
-Array = NDArray[np.float64]
+from fullpose._typing import Array, Integers
 
 
 @inlined
@@ -31,7 +27,7 @@ def turn(axis: int, angle: float, M: Array) -> None:
 
 
 @inner
-def payload_attitude(axes: NDArray[np.int64], d: Array, F: Array) -> None:
+def payload_attitude(axes: Integers, d: Array, F: Array) -> None:
     """F <- R4(d4) R3(d3) R2(d2) R1(d1), body from reference. d (4,) [rad], F (3, 3)."""
     for i in range(3):
         for j in range(3):
@@ -41,7 +37,7 @@ def payload_attitude(axes: NDArray[np.int64], d: Array, F: Array) -> None:
 
 
 @inner
-def jacobian(axes: NDArray[np.int64], d: Array, J: Array) -> None:
+def jacobian(axes: Integers, d: Array, J: Array) -> None:
     """J <- the body rate per frame rate, w = J d'; column i is R4..R(i+1) e_i. d (4,) [rad], J (3, 4)."""
     for i in range(4):
         for r in range(3):
@@ -206,7 +202,7 @@ def matrix_error(F: Array, C: Array) -> float:
 
 
 @kernel
-def payload_attitudes(axes: NDArray[np.int64], d: Array, F: Array) -> None:
+def payload_attitudes(axes: Integers, d: Array, F: Array) -> None:
     """`payload_attitude` of every row. d (n, 4) [rad], F (n, 3, 3)."""
     for k in range(d.shape[0]):
         payload_attitude(axes, d[k], F[k])

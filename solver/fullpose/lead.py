@@ -12,14 +12,13 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
+from fullpose._typing import Array
 from fullpose.errors import InputError, MethodError
 from fullpose.rig import FRAMES, LIMITS, FrameLimits, Rig
 from fullpose.verify import POSITION_TOLERANCE, TOLERANCE
-
-Array = NDArray[np.float64]
 
 SHORTEST, LONGEST = 0.1, 20.0  # [s] of a cubic
 STRETCH = 1.02  # from one duration that is tried to the next

@@ -15,14 +15,11 @@ v <= sqrt(2 A R) - A h / 2 where sqrt(2 A R) >= A h, else v <= R / h.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import inlined
+from fullpose._typing import Array, Codes
 from fullpose.rig import Rig
 from fullpose.solution import limited_code
-
-Array = NDArray[np.float64]
-Codes = NDArray[np.int16]
 
 MIN, MAX, RATE, ACCELERATION, WEIGHT, HOME = range(6)
 POSITION_CODE, RATE_CODE, ACCELERATION_CODE = (limited_code(0, limit) for limit in range(3))

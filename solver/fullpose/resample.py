@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, RotationSpline
 
+from fullpose._typing import Array
 from fullpose.errors import InputError
 from fullpose.flight import bad_time
-
-Array = NDArray[np.float64]
 
 # A time stamp may be rounded; one within this part of a period of its grid point counts as on it.
 ON_GRID = 1e-3

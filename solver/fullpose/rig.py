@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose._typing import Integers
 from fullpose.errors import RigError
 
 FRAMES = ("base", "outer", "middle", "inner")
@@ -103,7 +104,7 @@ class Rig:
                 raise RigError(f"frames.{name}.weight", frame.weight, "a finite number above zero")
 
     @cached_property
-    def axes(self) -> NDArray[np.int64]:
+    def axes(self) -> Integers:
         """Axis codes of d1..d4. (4,)"""
         return _readonly(np.array(self.geometry.axes, dtype=np.int64))
 

@@ -9,12 +9,11 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion, euler_from_dcm, quaternion_from_euler
 from fullpose.errors import InputError
 
-Array = NDArray[np.float64]
 DEG = math.pi / 180.0
 
 

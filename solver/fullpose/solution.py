@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose._typing import Codes, Counts
 from fullpose.rig import FRAMES, LIMITS, Rig
 
 EXACT = 0
@@ -41,8 +42,8 @@ class Solution:
     angles: NDArray[np.float64]  # (n, 4) [rad], base first, unwrapped
     error: NDArray[np.float64]  # (n,) [rad] geodesic
     matrix_error: NDArray[np.float64]  # (n,) largest entry of F - C
-    limited: NDArray[np.int16]  # (n,) `limited_code`
-    iterations: NDArray[np.int32]  # (n,)
+    limited: Codes  # (n,) `limited_code`
+    iterations: Counts  # (n,)
     step_time: NDArray[np.float64]  # (n,) [s] mean of the sample's block; nan where no clock was given
     solve_time: float  # [s]; nan where no clock was given
     blocking: Blocking | None = None

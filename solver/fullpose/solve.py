@@ -5,8 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fullpose._typing import Array, Codes, Counts
 from fullpose.errors import InputError, MethodError
 from fullpose.flight import bad_time
 from fullpose.methods import METHODS
@@ -14,8 +15,6 @@ from fullpose.methods.base import Stepper
 from fullpose.rig import FRAMES, Rig
 from fullpose.solution import Blocking, Solution, limited_name
 from fullpose.verify import attitude_errors, payload_attitudes
-
-Array = NDArray[np.float64]
 
 PLAN = "plan"  # the one method that sees the whole flight at once
 PREVIEW = "preview"  # the one that sees a part of it ahead
@@ -96,8 +95,8 @@ def _solution(
     time: Array,
     attitude: Array,
     angles: Array,
-    limited: NDArray[np.int16],
-    iterations: NDArray[np.int32],
+    limited: Codes,
+    iterations: Counts,
     step_time: Array,
     solve_time: float,
 ) -> Solution:

@@ -11,12 +11,10 @@ W is diagonal. No LAPACK: the systems are 3x3 and 4x4.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import inlined, inner
+from fullpose._typing import Array
 from fullpose.limits import inside
-
-Array = NDArray[np.float64]
 
 # Damping (Chiaverini) where the Jacobian has all but lost its third direction; sqrt(det J J^T) is at most 2.
 DAMPED_BELOW = 1e-4

@@ -8,12 +8,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fullpose._typing import Array
 from fullpose.errors import InputError
 from fullpose.rig import FRAMES, LIMITS, Rig
-
-Array = NDArray[np.float64]
 
 POSITION_TOLERANCE = math.radians(1e-9)
 TOLERANCE = 1e-6  # of a rate or acceleration limit

@@ -5,9 +5,9 @@ import piqp
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
+from fullpose._typing import Array
 from fullpose.kinematics import jacobian, null_vector
 from fullpose.rig import builtin_rigs
 from fullpose.step import (
@@ -21,7 +21,6 @@ from fullpose.step import (
     squared_damping,
 )
 
-Array = NDArray[np.float64]
 RIGS = builtin_rigs()
 SEED = st.integers(0, 2**32 - 1)
 

@@ -8,12 +8,8 @@ Units are radians and seconds; arrays are (4,), base first; a frame the rig has 
 from enum import IntFlag
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fullpose._typing import Array
 from fullpose.rig import Rig
-
-Array = NDArray[np.float64]
 
 
 class DriveError(Exception):

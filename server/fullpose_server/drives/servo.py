@@ -2,12 +2,8 @@
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fullpose._jit import kernel
-
-Array = NDArray[np.float64]
+from fullpose._typing import Array
 
 DISABLED, ENABLED, BRAKING = 0, 1, 2
 SUBSTEPS = 2

@@ -8,9 +8,10 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from fullpose._typing import Array
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.drives import servo
-from fullpose_server.drives.base import Array, Drive, DriveError, Status
+from fullpose_server.drives.base import Drive, DriveError, Status
 
 # A real motor has limits where the rig's description gives none.
 _MOST_RATE = math.radians(2000.0)

@@ -13,8 +13,9 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from fullpose._typing import Array
 from fullpose.rig import Rig
-from fullpose_server.drives.base import Array, Drive, DriveError, Status
+from fullpose_server.drives.base import Drive, DriveError, Status
 from fullpose_server.drives.packet import (
     STATE_SIZE,
     CommandPacket,

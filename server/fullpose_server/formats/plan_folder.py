@@ -16,11 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.rig import FRAMES, Rig
 
-Array = NDArray[np.float64]
 _ARRAYS = ("angles", "target", "error")
 
 

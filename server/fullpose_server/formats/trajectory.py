@@ -7,8 +7,8 @@ from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.attitude import (
     dcm_from_quaternion,
     euler_from_dcm,
@@ -19,7 +19,6 @@ from fullpose.attitude import (
 from fullpose.flight import bad_time, shortest
 from fullpose_server.errors import FileError
 
-Array = NDArray[np.float64]
 QUATERNION = ("qw", "qx", "qy", "qz")
 _BLOCK = 65536  # samples converted at once
 

@@ -15,8 +15,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
+from fullpose._typing import Array
 from fullpose_server.errors import FileError
-from fullpose_server.formats.trajectory import Array, Convention, Trajectory, column_names, from_columns
+from fullpose_server.formats.trajectory import Convention, Trajectory, column_names, from_columns
 
 PARQUET_MAGIC = b"PAR1"
 _HEADER_BYTES = 1_000_000

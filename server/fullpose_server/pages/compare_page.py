@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.attitude import euler_from_dcm
 from fullpose.compare import Row
 from fullpose.rig import FRAMES, Rig
@@ -26,8 +27,6 @@ FLIGHT_POINTS = 600
 # Okabe and Ito's colours, told apart by the colour-blind; the second round is dashed.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 DASHES = ("", "6 3", "2 2")
-
-Array = NDArray[np.float64]
 
 
 def compare_page(report: dict[str, Any], rows: tuple[Row, ...], rig: Rig, attitude: Array) -> str:

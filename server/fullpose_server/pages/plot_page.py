@@ -7,15 +7,14 @@ from importlib import resources
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.rig import FRAMES
 from fullpose.solution import Solution
 from fullpose_server.formats.report import why_infeasible
 from fullpose_server.pages.thin import thin
 
 POINTS = 4000
-Array = NDArray[np.float64]
 
 
 def plot_page(solution: Solution, report: dict[str, Any], name: str) -> str:

@@ -5,9 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.compare import compare, variants
 from fullpose.errors import MethodError
@@ -18,7 +16,6 @@ from fullpose_server.formats.compare_report import comparison_report
 from fullpose_server.pages.compare_page import compare_page
 from fullpose_server.planning.compare_length import check_length, check_samples
 
-Array = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]  # label, done, total
 
 

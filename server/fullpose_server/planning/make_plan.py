@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_dcm
 from fullpose.errors import MethodError
 from fullpose.lead import lead_in, lead_out
@@ -27,7 +27,6 @@ from fullpose_server.planning.remedy import find_remedy
 from fullpose_server.store.trajectories import read_arrays
 
 Progress = Callable[[str, int, int], None]  # phase, done, total
-Array = NDArray[np.float64]
 _NONE = np.empty((0, 4))
 
 

@@ -5,9 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fullpose._typing import Array
 from fullpose.plan import PlanOptions
 from fullpose.plan.remedies import NOTHING, Remedy, offset, relax, slow_down
 from fullpose.rig import FRAMES, LIMITS, Rig
@@ -17,7 +15,6 @@ from fullpose_server.planning.plan_request import check_frame
 
 RemedyKind = Literal["slow_down", "heading_offset", "mounting_offset", "relax"]
 KINDS: tuple[str, ...] = get_args(RemedyKind)
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fullpose._typing import Array
 from fullpose.rig import ABSENT, Rig
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

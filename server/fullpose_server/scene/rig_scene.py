@@ -16,9 +16,10 @@ import numpy as np
 import rich
 import trimesh
 import viser
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from trimesh.visual.material import PBRMaterial
 
+from fullpose._typing import Array
 from fullpose.rig import Rig
 from fullpose_server.scene import palette
 from fullpose_server.scene.machine import Part, build
@@ -26,7 +27,6 @@ from fullpose_server.scene.payload_mesh import load_mesh
 from fullpose_server.scene.pose import Pose, frame_quaternions
 from fullpose_server.scene.shapes import arrow, joined
 
-Array = NDArray[np.float64]
 APART_RAD = np.radians(0.15)  # commanded and measured closer than this look the same: no ghost
 MOVED_RAD = np.radians(5e-3)  # under a tenth of a pixel: not sent, so encoder noise costs nothing
 GHOST_SCALE = 1.008  # outside the solid it may coincide with, or the two flicker

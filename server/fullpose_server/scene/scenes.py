@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fullpose.rig import Rig
 from fullpose_server.formats.rig_file import DEFAULT_SIZE_M, Payload
@@ -28,7 +28,6 @@ from fullpose_server.scene.pose import Pose
 if TYPE_CHECKING:
     from fullpose_server.scene.rig_scene import RigScene
 
-Array = NDArray[np.float64]
 UPDATES_HZ = 30.0
 log = logging.getLogger(__name__)
 

@@ -5,9 +5,10 @@ from typing import cast
 
 import numpy as np
 import trimesh
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from fullpose._typing import Array
+
 SECTIONS = 96  # around a full turn
 
 

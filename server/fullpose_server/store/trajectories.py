@@ -11,8 +11,9 @@ from uuid import uuid4
 import numpy as np
 from sqlalchemy import func, select
 
+from fullpose._typing import Array
 from fullpose_server.errors import InUseError, NotFoundError
-from fullpose_server.formats.trajectory import Array, Convention, Trajectory
+from fullpose_server.formats.trajectory import Convention, Trajectory
 from fullpose_server.store.database import Database
 from fullpose_server.store.tables import PlanRow, TrajectoryRow
 

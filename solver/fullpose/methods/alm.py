@@ -17,9 +17,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import inlined, inner, kernel
+from fullpose._typing import Array, Codes, Counts, Integers
 from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose, rotation_error
 from fullpose.limits import WEIGHT, limit_table
@@ -54,9 +54,6 @@ from fullpose.methods.state import (
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.step import box_least_squares, quadratic_step, solve_symmetric, squared_damping
-
-Array = NDArray[np.float64]
-
 
 # What the step is asked for: the flight's own increment, as in the paper, whose linearisation error adds up; the
 # increment from the present attitude to the next, which does not drift; that, and then the exact solution curve.
@@ -220,7 +217,7 @@ def possible(J: Array, volume: float, weight: Array, nowhere: Array, e: Array, w
 @kernel
 def alm_block(
     horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     table: Array,
     gains: Array,
     tuning: Array,
@@ -231,8 +228,8 @@ def alm_block(
     state: Array,
     target: Array,
     angles: Array,
-    limited: NDArray[np.int16],
-    iterations: NDArray[np.int32],
+    limited: Codes,
+    iterations: Counts,
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 

@@ -8,12 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fullpose._typing import Array, Codes, Counts
 from fullpose.rig import Rig
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -21,8 +17,8 @@ class Block:
     """Results of m samples: angles (m, 4) [rad], limited (m,) codes, iterations (m,)."""
 
     angles: Array
-    limited: NDArray[np.int16]
-    iterations: NDArray[np.int32]
+    limited: Codes
+    iterations: Counts
 
 
 class Stepper(Protocol):

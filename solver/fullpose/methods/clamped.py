@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._jit import inner, kernel
+from fullpose._typing import Array, Codes, Counts, Integers
 from fullpose.kinematics import jacobian, null_vector, payload_attitude, rotation_error
 from fullpose.limits import WEIGHT, limit_table
 from fullpose.methods.base import Block, StepMethod, Stepper
@@ -50,8 +51,6 @@ from fullpose.methods.unlimited import require, require_fourth_axis
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.step import DAMPED_BELOW, solve_symmetric, squared_damping
-
-Array = NDArray[np.float64]
 
 HELD = math.radians(1e-9)  # a sample within this of the attitude is not limited; nor one within the tolerance
 LONGEST = 1.0  # [rad] a frame in one iteration; longer steps are damped, then shortened
@@ -200,7 +199,7 @@ def at_pole(J: Array, n: Array, free: NDArray[np.bool_]) -> bool:
 @kernel
 def clamped_block(
     horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     table: Array,
     parameters: Array,
     time: Array,
@@ -208,8 +207,8 @@ def clamped_block(
     state: Array,
     target: Array,
     angles: Array,
-    limited: NDArray[np.int16],
-    iterations: NDArray[np.int32],
+    limited: Codes,
+    iterations: Counts,
 ) -> None:
     """Advance `state` (see `tracking`) over m samples. Parameters: tolerance, cap, recovery."""
     work = np.empty((ROWS, 4))

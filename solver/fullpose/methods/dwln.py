@@ -22,9 +22,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers
 from fullpose.charts import base_chart, nearest
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
 from fullpose.methods.base import StepMethod, Stepper
@@ -39,8 +39,6 @@ from fullpose.methods.unlimited import (
 )
 from fullpose.rig import Rig
 from fullpose.step import solve_symmetric
-
-Array = NDArray[np.float64]
 
 HALF_TURN = 0.5 * math.pi
 NEAREST = 1e-3  # [rad] the distance to the limit is no smaller in H: on the limit and beyond it
@@ -160,14 +158,14 @@ def damped_step(J: Array, w: Array, e: Array, damping: float, A: Array, p: Array
 @kernel
 def dwln_block(
     horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     weight: Array,
     parameters: Array,
     time: Array,
     attitude: Array,
     state: Array,
     angles: Array,
-    iterations: NDArray[np.int32],
+    iterations: Counts,
 ) -> None:
     """See `sequence.SequenceKernel`; parameters: K, A, B1, B2, sigma_0, s_max, tolerance, cap, exact."""
     F = np.empty((3, 3))

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Codes, Counts, Integers
 from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose
 from fullpose.limits import WEIGHT, limit_table
@@ -34,8 +34,6 @@ from fullpose.methods.state import (
 )
 from fullpose.rig import Rig
 from fullpose.step import quadratic_step
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,7 @@ class ExactOptions:
 @kernel
 def exact_block(
     horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     table: Array,
     gains: Array,
     time: Array,
@@ -74,8 +72,8 @@ def exact_block(
     state: Array,
     target: Array,
     angles: Array,
-    limited: NDArray[np.int16],
-    iterations: NDArray[np.int32],
+    limited: Codes,
+    iterations: Counts,
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 

@@ -5,9 +5,9 @@ Source: Zu 2005. The frame that is held is the base or the inner one, whichever 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers
 from fullpose.charts import project
 from fullpose.methods.base import StepMethod, Stepper
 from fullpose.methods.gradient_projection import (
@@ -25,8 +25,6 @@ from fullpose.methods.unlimited import (
 )
 from fullpose.rig import Rig
 
-Array = NDArray[np.float64]
-
 
 class FixedJointOptions(GradientProjectionOptions):
     """Those of `gradient_projection`."""
@@ -35,14 +33,14 @@ class FixedJointOptions(GradientProjectionOptions):
 @kernel
 def fixed_joint_block(
     horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     _weight: Array,
     parameters: Array,
     time: Array,
     attitude: Array,
     state: Array,
     angles: Array,
-    iterations: NDArray[np.int32],
+    iterations: Counts,
 ) -> None:
     """See `sequence.SequenceKernel`; parameters as in `gradient_projection_step`."""
     F = np.empty((3, 3))

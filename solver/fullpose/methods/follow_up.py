@@ -14,9 +14,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers
 from fullpose.charts import base_chart, nearest
 from fullpose.limits import ACCELERATION, RATE, approach_rate, limit_box, limit_table
 from fullpose.methods.base import StepMethod, Stepper
@@ -33,8 +33,6 @@ from fullpose.methods.unlimited import (
 )
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
-
-Array = NDArray[np.float64]
 
 # The method's memory in the state: the base's rate, whether it is out of the way, where to, and the last interval.
 BASE_RATE, ASIDE, ASIDE_AT, PAST = MEMORY, MEMORY + 1, MEMORY + 2, MEMORY + 3
@@ -82,14 +80,14 @@ def base_target(horizontal: bool, C: Array, base: float, parameters: Array, stat
 @kernel
 def follow_up_block(
     horizontal: bool,
-    _axes: NDArray[np.int64],
+    _axes: Integers,
     _weight: Array,
     parameters: Array,
     time: Array,
     attitude: Array,
     state: Array,
     angles: Array,
-    iterations: NDArray[np.int32],
+    iterations: Counts,
 ) -> None:
     """See `sequence.SequenceKernel`; parameters: aside, back, bandwidth, then a `limit_table`, row by row."""
     bandwidth = parameters[2]

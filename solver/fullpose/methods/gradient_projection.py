@@ -14,9 +14,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers
 from fullpose.kinematics import jacobian, null_vector, payload_attitude, rotation_error
 from fullpose.methods.base import StepMethod, Stepper
 from fullpose.methods.unlimited import (
@@ -30,8 +30,6 @@ from fullpose.methods.unlimited import (
 )
 from fullpose.rig import Rig
 from fullpose.step import least_norm, squared_damping
-
-Array = NDArray[np.float64]
 
 NEAREST = 1e-6  # 1 - u^2 is no smaller in the gradient, on the limit and beyond it
 
@@ -70,7 +68,7 @@ def ascent(low: Array, high: Array, d: Array, limits: float, singularity: float,
 
 @kernel
 def gradient_projection_step(
-    axes: NDArray[np.int64], parameters: Array, d: Array, C: Array, h: float, F: Array, J: Array, n: Array, x: Array
+    axes: Integers, parameters: Array, d: Array, C: Array, h: float, F: Array, J: Array, n: Array, x: Array
 ) -> None:
     """x <- d + J^+ e + (I - J^+ J) g h for the target C. parameters: limits, singularity, max_rate, low (4), high (4).
 
@@ -94,14 +92,14 @@ def gradient_projection_step(
 @kernel
 def gradient_projection_block(
     _horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     _weight: Array,
     parameters: Array,
     time: Array,
     attitude: Array,
     state: Array,
     angles: Array,
-    iterations: NDArray[np.int32],
+    iterations: Counts,
 ) -> None:
     """See `sequence.SequenceKernel`; parameters as in `gradient_projection_step`."""
     F = np.empty((3, 3))

@@ -13,9 +13,9 @@ that attitude samples determine. Next to the rig's singularity, where J W^-1 J^T
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers
 from fullpose.kinematics import jacobian, null_vector, rotation_error
 from fullpose.methods.base import StepMethod, Stepper
 from fullpose.methods.unlimited import (
@@ -29,8 +29,6 @@ from fullpose.methods.unlimited import (
 from fullpose.rig import Rig
 from fullpose.step import least_norm, squared_damping
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class LagrangeOptions:
@@ -40,14 +38,14 @@ class LagrangeOptions:
 @kernel
 def lagrange_block(
     _horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     weight: Array,
     _parameters: Array,
     time: Array,
     attitude: Array,
     state: Array,
     angles: Array,
-    iterations: NDArray[np.int32],
+    iterations: Counts,
 ) -> None:
     """See `sequence.SequenceKernel`; no parameters."""
     J = np.empty((3, 4))

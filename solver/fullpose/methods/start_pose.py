@@ -1,17 +1,15 @@
 """The exact pose nearest to a given one: where a flight starts."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import inner, kernel
+from fullpose._typing import Array
 from fullpose.charts import TURN, base_chart, inner_chart, nearest, project
 from fullpose.kinematics import four_axis_pose, rotation_error
 from fullpose.limits import HOME, MAX, MIN, WEIGHT, limit_table
 from fullpose.rig import Rig
 from fullpose.solution import EXACT, limited_code
 from fullpose.step import box_least_squares
-
-Array = NDArray[np.float64]
 
 GRID = 720  # samples of each chart; half a degree
 HALVINGS = 40  # of the grid's step: far below rounding

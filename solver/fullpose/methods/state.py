@@ -12,9 +12,9 @@ stop: along the rate from which a set share of the smallest frame acceleration s
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import inlined, inner
+from fullpose._typing import Array, Codes, Integers
 from fullpose.charts import project
 from fullpose.kinematics import four_axis_pose, payload_attitude, rotation_error, self_motion
 from fullpose.limits import (
@@ -23,7 +23,6 @@ from fullpose.limits import (
     MAX,
     MIN,
     WEIGHT,
-    Codes,
     approach_rate,
     inside,
     limit_box,
@@ -32,8 +31,6 @@ from fullpose.limits import (
 from fullpose.rig import Z
 from fullpose.solution import EXACT
 from fullpose.step import box_least_squares, clamp, null_interval, squared_damping
-
-Array = NDArray[np.float64]
 
 # State of a flight in progress, one array: d (4), v (4), then these; beside it `target`, the last attitude (3, 3)
 PAST, CLOCK, PHASE, CODE = 8, 9, 10, 11  # interval just past [s], time [s], phase, code of the last sample
@@ -101,7 +98,7 @@ def rotate_back(e: Array, C: Array, G: Array) -> None:
 @inlined
 def goal_from(
     table: Array,
-    axes: NDArray[np.int64],
+    axes: Integers,
     state: Array,
     target: Array,
     C: Array,
@@ -139,7 +136,7 @@ def goal_from(
 @inner
 def goal(
     table: Array,
-    axes: NDArray[np.int64],
+    axes: Integers,
     state: Array,
     target: Array,
     C: Array,
@@ -208,7 +205,7 @@ def outermost_code(x: Array, lo: Array, hi: Array, lo_code: Codes, hi_code: Code
 
 @inner
 def give_way(
-    axes: NDArray[np.int64],
+    axes: Integers,
     table: Array,
     d: Array,
     G: Array,
@@ -250,7 +247,7 @@ def give_way(
 @inner
 def finish(
     horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     table: Array,
     state: Array,
     on_target: bool,

@@ -11,14 +11,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Integers
 from fullpose.charts import nearest
 from fullpose.methods.base import Block, StepMethod, Stepper
 from fullpose.rig import Rig, Y
-
-Array = NDArray[np.float64]
 
 # Below this the first axis is lost in rounding; the attitude error of any first angle is no larger than it.
 POLE = 1e-15
@@ -52,7 +50,7 @@ def three_axis_angles(first_is_y: bool, C: Array, branch: float, previous: float
 
 
 @kernel
-def three_axis_block(first_is_y: bool, columns: NDArray[np.int64], attitude: Array, d: Array, angles: Array) -> None:
+def three_axis_block(first_is_y: bool, columns: Integers, attitude: Array, d: Array, angles: Array) -> None:
     """angles <- for each attitude the set of the two that is nearer to the sample before; d is carried on.
 
     columns (3,) of first, second, roll; attitude (m, 3, 3); d (4,), angles (m, 4) [rad].

@@ -9,23 +9,21 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers
 from fullpose.errors import MethodError
 from fullpose.methods.base import Block
 from fullpose.methods.start_pose import start_pose
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 
-Array = NDArray[np.float64]
-
 # State of a flight in progress, one array: d (4), the last step (4), then
 LAST_STEP, TARGET, CLOCK, PLACED, MEMORY = 4, 8, 17, 18, 19
 STATE = 24  # MEMORY on: what one method keeps for itself
 
 # (horizontal, axes, weight (4,), parameters, time (m,), attitude (m, 3, 3), state, angles (m, 4), iterations (m,))
-SequenceKernel = Callable[[bool, NDArray[np.int64], Array, Array, Array, Array, Array, Array, NDArray[np.int32]], None]
+SequenceKernel = Callable[[bool, Integers, Array, Array, Array, Array, Array, Array, Counts], None]
 
 
 @kernel

@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers
 from fullpose.kinematics import jacobian, null_vector, payload_attitude, rotation_error
 from fullpose.methods.base import StepMethod, Stepper
 from fullpose.methods.unlimited import (
@@ -26,8 +26,6 @@ from fullpose.methods.unlimited import (
 )
 from fullpose.rig import Rig
 from fullpose.step import least_norm, squared_damping
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -47,14 +45,14 @@ class WeightedOptions:
 @kernel
 def weighted_block(
     _horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     weight: Array,
     parameters: Array,
     time: Array,
     attitude: Array,
     state: Array,
     angles: Array,
-    iterations: NDArray[np.int32],
+    iterations: Counts,
 ) -> None:
     """See `sequence.SequenceKernel`; parameters: far, near, width."""
     F = np.empty((3, 3))

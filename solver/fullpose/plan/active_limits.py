@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose._typing import Array, Codes, Integers
 from fullpose.rig import Rig
 from fullpose.solution import EXACT, limited_code
 from fullpose.trajectory.curve import LOCKED
 from fullpose.trajectory.linearisation import POSITION_UNIT
 from fullpose.verify import attitude_errors, differences, payload_attitudes
 
-Array = NDArray[np.float64]
 CHUNK = 1 << 16  # samples looked at together
 AT_LIMIT = 0.02  # share of a limit, or of `POSITION_UNIT` before a stop, within which it holds the frame
 TURNED = 1e-4  # [rad] a frame is turned by to see which way the attitude error falls
@@ -18,7 +18,7 @@ KINDS = 3  # limits a frame
 
 def limit_marks(
     time: Array, attitude: Array, angles: Array, rig: Rig, missed: NDArray[np.bool_]
-) -> NDArray[np.int16]:  # fmt: skip
+) -> Codes:  # fmt: skip
     """`limited_code` (n,) of the samples `missed` (n,), `EXACT` elsewhere: only limits that the rig has.
 
     A limit is active where the path angles (n, 4) [rad] comes within `AT_LIMIT` of it. Of those active at the sample
@@ -87,7 +87,7 @@ def _left(time: Array, angles: Array, rig: Rig) -> Array:
     return left
 
 
-def _nearest(places: NDArray[np.int64], samples: NDArray[np.int64]) -> NDArray[np.int64]:
+def _nearest(places: Integers, samples: Integers) -> Integers:
     """The nearest of `places` (sorted, at least one) to each of `samples`."""
     right = np.clip(np.searchsorted(places, samples), 0, len(places) - 1)
     left = np.maximum(right - 1, 0)

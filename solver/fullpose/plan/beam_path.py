@@ -6,12 +6,11 @@ decides the way and the inertia together; it is wide but not complete, so it pro
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array, Progress
 from fullpose.charts import TURN
 from fullpose.limits import limit_table
 from fullpose.rig import Rig
@@ -29,8 +28,6 @@ from fullpose.trajectory.curve import closest_all
 from fullpose.trajectory.nodes import NARROW, fill_nodes, grid_circle, lattice
 from fullpose.trajectory.options import PlanOptions
 
-Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 PIECE = 20.0  # [s] decided at once; bounds the memory, and the time until a cancel is heard
 FORESIGHT = 5.0  # [s] looked at beyond a piece before it is decided
 FIRST_GRID = math.radians(10.0)  # between the poses that a free start is tried from

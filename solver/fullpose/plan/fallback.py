@@ -1,15 +1,14 @@
 """Paths that are taken sample by sample: inside every limit, exact wherever that could be had."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.methods import METHODS
 from fullpose.preview.flight import PreviewFlight
 from fullpose.preview.replan import PreviewOptions
 from fullpose.rig import Rig
 from fullpose.verify import attitude_errors, payload_attitudes
 
-Array = NDArray[np.float64]
 # [s] known and [s] between two ways, of the previews
 FORESIGHTS = ((4.0, 0.2), (8.0, 0.5))
 EXACT_ERROR = 1e-12  # [rad] of attitude error above which a sample is not exact

@@ -9,12 +9,11 @@ included, keeps inside its limits. A frame without an acceleration limit that ha
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.trajectory.sqp import MET
 
-Array = NDArray[np.float64]
 GENTLE, LONGEST = 0.1, 120.0  # [s]
 EDGE = 0.25  # share of the lead in which the deceleration rises, and in which it falls
 AT_REST = 1e-9  # of a limit: rates and accelerations below this need no lead

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Codes, Flags
 from fullpose.limits import ACCELERATION, MAX, MIN, approach_rate, limit_box, limit_table
 from fullpose.methods.start_pose import start_pose
 from fullpose.plan.active_limits import limit_marks
@@ -19,13 +20,12 @@ from fullpose.plan.fallback import EXACT_ERROR, Stepped
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.trajectory.bspline import WIDTH, Basis, spline_basis
-from fullpose.trajectory.linearisation import ROW, Flags, displaced, error_bands, limit_rows, over_limits
+from fullpose.trajectory.linearisation import ROW, displaced, error_bands, limit_rows, over_limits
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.qp import Equality, QuadraticProgramme, solve_programme
 from fullpose.trajectory.sqp import MET, NEAR, STRIDE, Limits, cost_weights, rig_limits, worst
 from fullpose.verify import attitude_errors, payload_attitudes
 
-Array = NDArray[np.float64]
 PADDING = 0.25  # [s] of the exact path given up on each side of a place outside the limits, at first
 ERROR_WEIGHT = 1e4  # [1/rad^2] beside rates and accelerations squared as shares of their limits
 SLACK_COST = 1e5  # of a limit exceeded by its whole: the limits win over the attitude
@@ -42,7 +42,7 @@ class BestEffort:
     """angles (n, 4) [rad], limited (n,) codes, and how far outside the limits it still is (a share; <= 0 inside)."""
 
     angles: Array
-    limited: NDArray[np.int16]
+    limited: Codes
     over: float
 
 

@@ -5,8 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fullpose._typing import Array, Codes, Counts, Progress
 from fullpose.errors import InputError
 from fullpose.methods.start_pose import start_pose
 from fullpose.plan.lead import lead_in, lead_out
@@ -22,8 +23,6 @@ from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.sqp import MET, RATE_MET
 from fullpose.trajectory.windows import Path, overrun
 
-Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a chain
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
 STILL = 1e-14  # range of an entry of C up to which an attitude counts as constant: what rounding leaves
@@ -112,8 +111,8 @@ class _Flown:
     """What the search came to: angles (n, 4), iterations (n,), limited codes (n,), and who decided if it failed."""
 
     angles: Array
-    iterations: NDArray[np.int32]
-    limited: NDArray[np.int16]
+    iterations: Counts
+    limited: Codes
     decided_by: str
     blocking: Blocking | None
     grid: float

@@ -7,12 +7,13 @@ few of them; what is returned is planned anew from all of them. `progress(done, 
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fullpose._typing import Array, Progress
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_dcm
 from fullpose.errors import InputError
 from fullpose.plan.plan import Plan, plan
@@ -22,8 +23,6 @@ from fullpose.rig import FRAMES, LIMITS, FrameLimits, Rig
 from fullpose.trajectory.curve import LOCKED
 from fullpose.trajectory.options import PlanOptions
 
-Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 TRIAL_INTERVAL = 0.005  # [s] between the samples that a trial looks at
 RELATIVE = 0.01  # to which factors are found
 NOTHING = "nothing"  # what is changed of a flight that fits as it is, where limits are raised

@@ -1,11 +1,10 @@
 """The search for one flight's path: chains, the smooth curve along one, its refinement, and others where it failed."""
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array, Progress
 from fullpose.plan.beam_path import BREADTHS, attainable_rates, first_poses, inertial_chain
 from fullpose.plan.fallback import EXACT_ERROR, Stepped
 from fullpose.plan.three_axis import turns_into_range
@@ -17,8 +16,6 @@ from fullpose.trajectory.sqp import MET, locked, missed_rate
 from fullpose.trajectory.windows import Path, overrun, refine_path, smooth_curve, stage_samples
 from fullpose.verify import attitude_errors, payload_attitudes
 
-Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 AVOID_RADIUS = math.radians(30.0)
 AVOID_COST = 5.0  # [1/s], beside rates squared as shares of their limits
 AVOID_TIME = 0.4  # [s] before and after

@@ -5,15 +5,13 @@ At the pole, where the first angle is not determined, it keeps its value of the 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array
 from fullpose.charts import TURN, nearest
 from fullpose.methods.three_axis import three_axis_angles
 from fullpose.rig import Rig, Y
 from fullpose.trajectory.shortest_path import reference_rates
-
-Array = NDArray[np.float64]
 
 
 @kernel

@@ -4,13 +4,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array, Integers
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Blocking
 from fullpose.verify import Violation, attitude_errors, differences, payload_attitudes, verify
 
-Array = NDArray[np.float64]
 CHUNK = 1 << 18  # samples looked at together, so that an hour needs no copies of itself
 STENCIL = 4  # samples that a cubic goes through
 SPARSE = math.radians(0.01)  # [rad] of attitude half-way between samples, above which they are called too sparse
@@ -174,7 +173,7 @@ def _cubic_weights(time: Array, at: Array) -> tuple[Array, Array, Array]:
     return value, slope, bend
 
 
-def _weighted(weights: Array, y: Array, first: NDArray[np.int64]) -> Array:
+def _weighted(weights: Array, y: Array, first: Integers) -> Array:
     """Sum over j of weights (m, 4) times y[first + j]; y (n, ...)."""
     shape = (-1,) + (1,) * (y.ndim - 1)
     return np.asarray(sum(weights[:, j].reshape(shape) * y[first + j] for j in range(STENCIL)))

@@ -3,15 +3,13 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.methods.base import Block
 from fullpose.preview.prediction import SPACING
 from fullpose.preview.replan import Ahead, PreviewOptions
 from fullpose.preview.stepper import PreviewStepper
 from fullpose.rig import Rig
-
-Array = NDArray[np.float64]
 
 
 class PreviewFlight:

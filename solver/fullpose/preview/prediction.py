@@ -8,14 +8,12 @@ averaged and not differentiated.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array
 from fullpose.errors import InputError
 from fullpose.kinematics import rotation_error
 from fullpose.methods.state import rotate_back
-
-Array = NDArray[np.float64]
 
 SPACING = 0.005  # [s] between samples kept: a stage of the search is ten times as long
 CAPACITY = 1024

@@ -11,8 +11,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.errors import MethodError
 from fullpose.limits import limit_table
 from fullpose.preview.prediction import attitudes_ahead
@@ -21,8 +21,6 @@ from fullpose.trajectory.beam_search import search
 from fullpose.trajectory.curve import closest_all
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.sqp import refine
-
-Array = NDArray[np.float64]
 
 START_BEAM = 1000  # states kept a stage then: the way begins anywhere
 HOME_COST = 1e-3  # [1/(rad^2 s)]: decides where nothing else does

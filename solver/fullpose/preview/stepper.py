@@ -14,9 +14,9 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Codes, Counts, Integers
 from fullpose.errors import MethodError
 from fullpose.kinematics import jacobian, null_vector
 from fullpose.limits import MAX, MIN, WEIGHT, limit_table
@@ -51,8 +51,6 @@ from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.step import quadratic_step
 from fullpose.trajectory.nodes import fill_nodes, grid_circle
-
-Array = NDArray[np.float64]
 
 START_GRID = 60  # nodes a turn among which a free start is chosen
 
@@ -93,7 +91,7 @@ def follow(way_time: Array, way_pose: Array, way_rate: Array, state: Array, h: f
 @kernel
 def preview_block(
     horizontal: bool,
-    axes: NDArray[np.int64],
+    axes: Integers,
     table: Array,
     gains: Array,
     way_time: Array,
@@ -104,8 +102,8 @@ def preview_block(
     state: Array,
     target: Array,
     angles: Array,
-    limited: NDArray[np.int16],
-    iterations: NDArray[np.int32],
+    limited: Codes,
+    iterations: Counts,
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 

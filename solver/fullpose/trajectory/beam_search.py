@@ -13,14 +13,12 @@ one that exceeds least and latest.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array
 from fullpose.charts import TURN, project
 from fullpose.limits import ACCELERATION, HOME, MAX, MIN, RATE, WEIGHT, limit_box, tolerances
 from fullpose.step import clamp, null_interval
-
-Array = NDArray[np.float64]
 
 # Indices of the weights of the cost, one array
 RATES, ACCELERATIONS, SINGULARITY, RANGES, EXCESS, AT_END, HOMING, ROOM, ROOM_TIME, ROOM_RATE = range(10)

@@ -7,9 +7,9 @@ samples themselves. Knots count samples, not seconds, so that neighbouring sampl
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from fullpose._typing import Array, Integers
+
 WIDTH = 4  # functions that are not zero at one sample
 FEW = 12  # samples, below which they are the unknowns themselves
 
@@ -20,7 +20,7 @@ class Basis:
     value and the first two derivatives at the ends."""
 
     size: int
-    first: NDArray[np.int64]  # (n,)
+    first: Integers  # (n,)
     values: Array  # (n, WIDTH)
 
 

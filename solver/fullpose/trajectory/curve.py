@@ -8,21 +8,20 @@ the chart take the last digits.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Integers
 from fullpose.charts import project
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
 
-Array = NDArray[np.float64]
 DAMPING = 1e-14  # least damping of the projection: rounding may move a singular pose by 1e-9 rad, no more
 LOCKED = 1e-4  # [rad] a frame with a range below does not move: the others follow from it
 POLISHED = 1e-10  # [rad] the last digits; a chart that moves a pose by more is next to its fold
 
 
 @kernel
-def closest(axes: NDArray[np.int64], C: Array, d: Array) -> float:
+def closest(axes: Integers, C: Array, d: Array) -> float:
     """d <- the exact pose next to d by Newton steps of least norm; returns the error left [rad].
 
     C (3, 3), d (4,) [rad] in place. Damped by the square of the error (Levenberg-Marquardt), which costs no order of
@@ -73,7 +72,7 @@ def closest(axes: NDArray[np.int64], C: Array, d: Array) -> float:
 
 
 @kernel
-def closest_all(axes: NDArray[np.int64], horizontal: bool, attitude: Array, d: Array) -> int:
+def closest_all(axes: Integers, horizontal: bool, attitude: Array, d: Array) -> int:
     """`closest` of every row in place; returns how many had to fall back to the chart (singular or not converged).
 
     attitude (n, 3, 3), d (n, 4) [rad].
@@ -90,7 +89,7 @@ def closest_all(axes: NDArray[np.int64], horizontal: bool, attitude: Array, d: A
 
 
 @kernel
-def hold_locked(horizontal: bool, axes: NDArray[np.int64], attitude: Array, low: Array, high: Array, d: Array) -> None:
+def hold_locked(horizontal: bool, axes: Integers, attitude: Array, low: Array, high: Array, d: Array) -> None:
     """Slide every row of d (n, 4) along the solutions until its locked frame is in the middle of its range, in place.
 
     low, high (4,) [rad]. Of several locked frames the one that the self-motion moves most; where none is moved by it,

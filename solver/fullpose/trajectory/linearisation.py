@@ -11,12 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Flags, Integers
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
 from fullpose.trajectory.bspline import WIDTH
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.uint8]
 ROW = WIDTH + 2  # functions that one row of differences can touch
 POSITION, RATE, ACCELERATION = range(3)
 POSITION_UNIT = 0.02  # [rad] counts as much as the whole of a rate limit
@@ -76,7 +74,7 @@ def over_limits(
 
 
 @kernel
-def displaced(d: Array, n: Array, first: Ints, values: Array, c: Array, out: Array) -> None:
+def displaced(d: Array, n: Array, first: Integers, values: Array, c: Array, out: Array) -> None:
     """out <- d + n z, z the spline of coefficients c. d, n, out (k, 4)."""
     for k in range(d.shape[0]):
         z = 0.0
@@ -88,13 +86,13 @@ def displaced(d: Array, n: Array, first: Ints, values: Array, c: Array, out: Arr
 
 
 @kernel
-def _add(row: Array, origin: int, k: int, scale: float, first: Ints, values: Array) -> None:
+def _add(row: Array, origin: int, k: int, scale: float, first: Integers, values: Array) -> None:
     for b in range(values.shape[1]):
         row[first[k] - origin + b] += scale * values[k, b]
 
 
 @kernel
-def fill_row(kind: int, k: int, i: int, time: Array, n: Array, first: Ints, values: Array, row: Array) -> int:
+def fill_row(kind: int, k: int, i: int, time: Array, n: Array, first: Integers, values: Array, row: Array) -> int:
     """row (ROW,) <- derivative of `difference` by the coefficients; returns the first one's index."""
     row[:] = 0.0
     if kind == 0:
@@ -116,7 +114,7 @@ def fill_row(kind: int, k: int, i: int, time: Array, n: Array, first: Ints, valu
 
 @kernel
 def cost_bands(
-    time: Array, d: Array, n: Array, first: Ints, values: Array, stride: int, rate_weight: Array,
+    time: Array, d: Array, n: Array, first: Integers, values: Array, stride: int, rate_weight: Array,
     acceleration_weight: Array,
     home: Array, home_cost: float, margin: float, rise: float, H: Array, g: Array,
 ) -> None:  # fmt: skip
@@ -167,9 +165,9 @@ def cost_bands(
 
 @kernel
 def limit_rows(
-    time: Array, d: Array, n: Array, first: Ints, values: Array, stride: int, flags: Flags, trust: float,
+    time: Array, d: Array, n: Array, first: Integers, values: Array, stride: int, flags: Flags, trust: float,
     low: Array, high: Array,
-    rate: Array, acceleration: Array, near: float, origin: Ints, rows: Array, bound: Array, tag: Ints,
+    rate: Array, acceleration: Array, near: float, origin: Integers, rows: Array, bound: Array, tag: Integers,
 ) -> int:  # fmt: skip
     """The rows that may matter: row c <= bound. Returns how many; fills as many as the outputs hold.
 
@@ -222,7 +220,7 @@ def limit_rows(
 
 @kernel
 def error_bands(
-    axes: Ints, time: Array, attitude: Array, d: Array, first: Ints, values: Array, stride: int, weight: float,
+    axes: Integers, time: Array, attitude: Array, d: Array, first: Integers, values: Array, stride: int, weight: float,
     rate_weight: Array, acceleration_weight: Array, H: Array, g: Array,
 ) -> float:  # fmt: skip
     """H, g <- the Gauss-Newton model of the attitude error squared, all four frames free; returns that error.

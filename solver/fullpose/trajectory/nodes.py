@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Integers
 from fullpose.charts import TURN
 from fullpose.rig import Rig
 
-Array = NDArray[np.float64]
 OVERLAP = 0.8  # share of the other chart's measure from which a chart is used
 NARROW = 3.0  # grid steps; a range below may hold no node
 CLEARANCE = 1e-4  # sin^2 d2 + cos^2 d3 below which a point is no node: half a degree from the singularity
@@ -32,7 +32,7 @@ class Lattice:
     low: Array  # (4,) [rad] of the lowest copy; -pi for a frame that wraps
     high: Array  # (4,) [rad]; inf for a frame that wraps
     wraps: NDArray[np.bool_]  # (4,) frames whose turns are not counted
-    copies: NDArray[np.int64]  # (4,) turns kept apart
+    copies: Integers  # (4,) turns kept apart
 
     @property
     def step(self) -> float:

@@ -9,13 +9,12 @@ from typing import Any
 
 import numpy as np
 import piqp
-from numpy.typing import NDArray
 from scipy import sparse
 
+from fullpose._typing import Array, Integers
 from fullpose.trajectory.bspline import PINNED
 from fullpose.trajectory.linearisation import ROW
 
-Array = NDArray[np.float64]
 SLACK_COST = 100.0  # per whole limit and bin; the rest of the cost is of the order of one a second
 TOLERANCE = 1e-7
 Matrix = Any  # a SciPy sparse matrix, compressed columns
@@ -40,11 +39,11 @@ class QuadraticProgramme:
 
     bands: Array  # (size, band) H[j, j + b]
     gradient: Array  # (size,)
-    origin: NDArray[np.int64]  # (r,)
+    origin: Integers  # (r,)
     rows: Array  # (r, ROW)
     bound: Array  # (r,)
-    frame: NDArray[np.int64]  # (r,)
-    group: NDArray[np.int64]  # (r,) rows of one group share a slack
+    frame: Integers  # (r,)
+    group: Integers  # (r,) rows of one group share a slack
     trust: float
     pinned: tuple[bool, bool]
     equalities: tuple[Equality, ...] = ()

@@ -7,24 +7,22 @@ for a block of stages and the costs at its beginning, so memory does not grow wi
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose._typing import Array, Counts, Integers, Progress
 from fullpose.charts import TURN
 from fullpose.rig import Rig
 from fullpose.trajectory.nodes import Lattice, fill_nodes, grid_circle
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.shortest_path_kernels import advance, nearest_crossing, node_costs, single
 
-Array = NDArray[np.float64]
 REFERENCE_RATE = math.pi  # [rad/s] stands in for the limit, in costs only, where no frame has one
 BACK_BYTES = 128 << 20  # of back-pointers held at once
 # How far an edge is looked for where no rate limit bounds it: times the body's own rotation, and cells on top.
 LOOK, LOOK_CELLS = 10.0, 4.0
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -199,7 +197,7 @@ class Programme:
         """Whether edges are kept short that the limits do not bound: a chain that is missing then may exist."""
         return self._unlimited and not self.everywhere
 
-    def _step(self, stage: int, position: Array, costs: Array, back: NDArray[np.int32]) -> tuple[Array, Array] | None:
+    def _step(self, stage: int, position: Array, costs: Array, back: Counts) -> tuple[Array, Array] | None:
         dt = self.time[stage] - self.time[stage - 1]
         ahead, node_cost, alive = self.nodes(stage)
         after = np.empty_like(costs)
@@ -247,7 +245,7 @@ class Programme:
             return int(np.argmax(finite)), 0
         return frame, 1
 
-    def _unwrapped(self, path: NDArray[np.int64], W: int, start: Array | None) -> Array:
+    def _unwrapped(self, path: Integers, W: int, start: Array | None) -> Array:
         """The angles of a path of states (k, 4), continuous, in their counted turns, else the turn nearest home."""
         n = len(path)
         angles = np.empty((n, 4))

@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers
 from fullpose.charts import TURN
 from fullpose.trajectory.nodes import fill_nodes
-
-Array = NDArray[np.float64]
 
 
 @kernel
@@ -25,9 +24,9 @@ def advance(
     weight: Array,
     high: Array,
     wraps: NDArray[np.bool_],
-    copies: NDArray[np.int64],
+    copies: Integers,
     cost1: Array,
-    back: NDArray[np.int32],
+    back: Counts,
 ) -> int:
     """One stage of the programme: cost1, back <- the best predecessor of every state; returns how many were reached.
 

@@ -5,18 +5,16 @@ limits; put the result back on the solutions; again, until nothing moves. Long f
 joined to the one before with value, slope and bend.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array, Flags
 from fullpose.rig import Rig
 from fullpose.trajectory.bspline import Basis, spline_basis
 from fullpose.trajectory.curve import LOCKED, closest_all, null_vectors
 from fullpose.trajectory.linearisation import (
     ROW,
-    Flags,
     cost_bands,
     difference,
     displaced,
@@ -28,7 +26,6 @@ from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.qp import Equality, QuadraticProgramme, solve_programme
 from fullpose.trajectory.shortest_path import reference_rates
 
-Array = NDArray[np.float64]
 CHUNK = 1 << 17  # samples looked at together
 RATE_MET = 1e-4  # of the lowest rate limit: a start rate missed by less counts as taken up
 MET = 1e-7  # of a limit: over it by less counts as inside
@@ -38,7 +35,6 @@ ROOM = 0.8  # of v^2 / a: the way that a lead needs between rest and rate v
 SHORTEST = 3.0  # samples: a lead has four at least, of half the rate on average, and the rate it starts from may rise
 LEAD_UNIT = 0.005  # [rad] short of that room counts as much as the whole of a rate limit
 STRIDE = 3.0  # rows a knot
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)

@@ -1,23 +1,19 @@
 """From a chain to a path for the whole flight: smooth, exact, refined window by window."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array, Counts, Integers, Progress
 from fullpose.rig import Rig
 from fullpose.trajectory.curve import closest_all, hold_locked, smoothed, spline_rows, spline_slopes
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.shortest_path import Chain
 from fullpose.trajectory.sqp import MET, OVERRUN, Refined, refine, rig_limits, worst
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 STIFFNESS = (5.0, 0.3, 0.0)  # of the smoothing of a chain, tried in turn until the path does not jump
 JUMP = 4.0  # times the rate limit between two samples: no curve any more
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -26,10 +22,10 @@ class Path:
 
     angles: Array
     failures: tuple[Refined, ...]  # `sample` counted from the flight's beginning
-    iterations: NDArray[np.int32]
+    iterations: Counts
 
 
-def stage_samples(time: Array, stage: float) -> Ints:
+def stage_samples(time: Array, stage: float) -> Integers:
     """The samples nearest to every `stage` seconds, first and last included."""
     n = len(time)
     count = max(1, round(float(time[-1] - time[0]) / stage)) if n > 1 else 1
@@ -39,7 +35,7 @@ def stage_samples(time: Array, stage: float) -> Ints:
     return np.unique(np.r_[0, np.clip(at, 0, n - 1), n - 1])
 
 
-def smooth_curve(time: Array, attitude: Array, rig: Rig, samples: Ints, chain: Chain, start: Array | None) -> Array:
+def smooth_curve(time: Array, attitude: Array, rig: Rig, samples: Integers, chain: Chain, start: Array | None) -> Array:
     """The exact path (n, 4) [rad] next to the smoothed chain, whose stages are at `samples`."""
     knots = time[samples]
     points = chain.angles.copy()

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from fullpose._typing import Array
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
 from fullpose.limits import limit_table, tolerances
 from fullpose.methods.state import (
@@ -31,7 +31,6 @@ from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.solution import EXACT, limited_code
 from fullpose.verify import payload_attitudes
 
-Array = NDArray[np.float64]
 RIG = builtin_rigs()["vertical-4"]
 LIMITED = limited_code(3, 0)
 VECTOR = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)

@@ -5,14 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from fullpose._typing import Array
 from fullpose.plan import Plan, plan
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
 
-Array = NDArray[np.float64]
 DEG = math.pi / 180.0
 ORDER = {Geometry.VERTICAL_4: "YZYX", Geometry.HORIZONTAL_4: "ZYZX"}
 

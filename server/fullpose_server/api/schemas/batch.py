@@ -3,12 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
 from fullpose.solution import limited_name
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.solve import Attitudes, Limited
-
-Array = NDArray[np.float64]
 
 
 def attitudes(message: Attitudes) -> tuple[Array, Array]:

@@ -9,8 +9,9 @@ import time
 
 import numpy as np
 
+from fullpose._typing import Array
 from fullpose.rig import Rig, builtin_rigs
-from fullpose_server.drives.base import Array, Drive, DriveError, Status
+from fullpose_server.drives.base import Drive, DriveError, Status
 
 
 class DriveConformance:

@@ -11,12 +11,11 @@ stamp plus that offset; the attitude flown is the one `delay` ago, so that jitte
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array
 from fullpose_server.runtime.live.packets import LiveSample
 
-Array = NDArray[np.float64]
 _KEPT = 64  # samples, beside those that are known ahead
 _FASTEST_HZ = 1000.0  # of a source
 _DRIFT = 2e-4  # [s/s] of the offset, upward: more than two quartz clocks differ

@@ -10,8 +10,8 @@ import subprocess
 import sys
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.errors import SolverError
 from fullpose.plan import Ahead, PreviewOptions, PreviewStepper, Replan
 from fullpose.registry import method_options
@@ -20,7 +20,6 @@ from fullpose_server.runtime.live.planner_process import MESSAGE
 from fullpose_server.runtime.live.steppers import Flight, LiveError, LiveSettings
 from fullpose_server.runtime.motion.path_player import attitude_of
 
-Array = NDArray[np.float64]
 FARTHEST_S = 2.0  # of the future
 _READY_S = 60.0  # with no kernel in the cache, compiling takes most of it
 _LEVEL = (1.0, 0.0, 0.0, 0.0)

@@ -12,8 +12,8 @@ import time
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.rig import Rig
 from fullpose_server.runtime.contract.config import LiveConfig
 from fullpose_server.runtime.contract.messages import LiveHealth
@@ -30,7 +30,6 @@ from fullpose_server.runtime.live.packets import (
 from fullpose_server.runtime.live.steppers import LiveSettings, LiveStep, live_step
 from fullpose_server.runtime.motion.path_player import attitude_error
 
-Array = NDArray[np.float64]
 _PER_TICK = 16
 _RATE_OVER_S = 1.0
 _SOURCE_SILENT_S = 0.5  # then another may be followed in its place

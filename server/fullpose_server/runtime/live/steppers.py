@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.errors import SolverError
 from fullpose.kinematics import payload_attitude
 from fullpose.rig import Rig
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     Taken = TypeVar("Taken", bound=LiveStepper)
 else:
     Taken = TypeVar("Taken")
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

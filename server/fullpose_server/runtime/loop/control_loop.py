@@ -13,8 +13,8 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.rig import FRAMES
 from fullpose_server.drives.base import Drive
 from fullpose_server.formats.plan_folder import rig_hash
@@ -33,7 +33,6 @@ from fullpose_server.session.alarms import Severity
 from fullpose_server.session.machine import SessionMachine
 from fullpose_server.session.states import IN_MOTION, Action, Command, Event, State
 
-Array = NDArray[np.float64]
 _RAD = math.pi / 180.0
 _AT_REST = 0.5 * _RAD  # [rad/s] a table slower than this that brakes by itself counts as stopped
 _NOISE = 0.01 * _RAD  # [rad] beyond a limit that an encoder may read at rest on it

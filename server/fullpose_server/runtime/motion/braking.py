@@ -3,11 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fullpose._jit import kernel
-
-Array = NDArray[np.float64]
+from fullpose._typing import Array
 
 
 @kernel

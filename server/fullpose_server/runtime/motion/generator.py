@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.rig import Rig
 from fullpose_server.formats.plan_folder import PlanFolder
 from fullpose_server.runtime.contract.config import MotionConfig
@@ -18,8 +19,6 @@ from fullpose_server.runtime.motion.braking import brake_step, deceleration_for
 from fullpose_server.runtime.motion.path_player import PathPlayer, attitude_error
 from fullpose_server.runtime.motion.point_to_point import PointMove
 from fullpose_server.session.states import Event
-
-Array = NDArray[np.float64]
 
 
 class Mode(Enum):

@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.runtime.contract.config import GuardConfig, Tolerance
 from fullpose_server.runtime.motion.braking import stopping_distance
 from fullpose_server.runtime.motion.path_player import attitude_error
-
-Array = NDArray[np.float64]
 
 FINITE, STEP, POSITION, RATE, ACCELERATION, BRAKING = range(1, 7)
 CHECKS = ("", "finite", "step", "position", "rate", "acceleration", "braking")

@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._jit import kernel
+from fullpose._typing import Array
 from fullpose.charts import project
 from fullpose.kinematics import payload_attitude, rotation_error
 from fullpose.rig import Rig
 from fullpose_server.formats.plan_folder import PlanFolder
-
-Array = NDArray[np.float64]
 
 # Rows of the player's state: place on the path [samples], time scale, its rate of change [1/s].
 PLACE, SCALE, SCALE_RATE = 0, 1, 2

@@ -3,13 +3,12 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from ruckig import InputParameter, Result, Ruckig, RuckigError, Synchronization, Trajectory
 
+from fullpose._typing import Array
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.runtime.contract.config import MotionConfig
 
-Array = NDArray[np.float64]
 # Of the rig's own limits: a sampled move is differenced over ticks, and the guard allows a millionth more.
 _SHARE = 0.999
 
