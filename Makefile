@@ -1,8 +1,12 @@
-.PHONY: demo test format clean
+.PHONY: demo quick test format clean
 # Everything a fresh machine needs: python3 and make.
 
 demo: ## installs, serves, a real flight is flying; the first line is the address
 	@tools/demo
+
+quick: ## the gates that take a minute: format, lint, imports, types, the console's, the house's
+	@tools/setup dev
+	@tools/gates quick
 
 test: ## installs what the tests need and runs every gate
 	@tools/setup dev

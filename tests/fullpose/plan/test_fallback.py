@@ -13,9 +13,7 @@ from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.solve import solve
 from fullpose.verify import attitude_errors, payload_attitudes, verify
-from fullpose_server.formats.trajectory import Convention
-from fullpose_server.formats.trajectory_file import read_trajectory
-from tests.support.repository import FLIGHTS
+from tests.support.flights import example_flight
 
 
 def tumble(seed: int, degrees_per_second: float) -> tuple[np.ndarray, np.ndarray]:
@@ -61,8 +59,8 @@ def test_what_the_step_method_flies_is_planned(seed: int) -> None:
 
 def test_a_real_roll_with_a_slow_inner_frame_is_planned() -> None:
     """The chains turn this roll over the inner frame; by the step method's way it need not turn."""
-    flight = read_trajectory(FLIGHTS / "slow_roll.csv", Convention.NED)
-    time, attitude = flight.time[::4], dcm_from_quaternion(flight.q[::4])
+    t, q = example_flight("slow_roll")
+    time, attitude = t[::4], dcm_from_quaternion(q[::4])
     free = FrameLimits()
     rig = Rig("few", Geometry.VERTICAL_4, (free, free, free, FrameLimits(max_rate=math.radians(3.0))))
     made = plan(time, attitude, rig)
