@@ -19,6 +19,7 @@ def test_the_committed_contract_is_what_the_app_says(tmp_path: Path) -> None:
 
 def test_every_error_is_a_problem_document() -> None:
     document = json.loads(COMMITTED.read_text(encoding="utf-8"))
+    assert len(document["paths"]) > 20
     for path, operations in document["paths"].items():
         for method, operation in operations.items():
             assert operation["responses"]["default"]["content"].keys() == {"application/problem+json"}, (path, method)

@@ -1,7 +1,6 @@
 """Every way in which a flight's file can be wrong has one message that says where; good files give the attitude."""
 
 import json
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -261,10 +260,15 @@ def test_a_broken_parquet_file_is_one_clear_error_wherever_it_is_broken(tmp_path
     path = tmp_path / "flight.parquet"
     pq.write_table(pa.table({name: np.arange(5.0) for name in HEADER.strip().split(",")}), path)
     whole, random = path.read_bytes(), np.random.default_rng(1)
+    refusals: list[str] = []
     for place in range(4, len(whole)):
         path.write_bytes(whole[:place] + bytes([int(random.integers(256)) | 0x80]) + whole[place + 1 :])
-        with suppress(FileError):  # and no other
+        try:
             read_trajectory(path, Convention.NUE, "flight.csv")
+        except FileError as error:  # and no other
+            refusals.append(str(error))
+    assert all("flight.csv" in said for said in refusals)
+    assert len(refusals) > len(whole) // 2  # what is not read, statistics and padding, may be anything
 
 
 def test_turns_are_counted_through_every_sample() -> None:

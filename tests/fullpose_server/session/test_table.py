@@ -62,10 +62,15 @@ def test_faults_and_a_lost_link_are_answered_everywhere(state: State) -> None:
 
 def test_no_two_rows_can_fire_at_once() -> None:
     exclusive = [{When.FLIGHT, When.MOVE}, {When.LINKED, When.UNLINKED}]
-    for i, row in enumerate(TABLE):
-        for other in TABLE[i + 1 :]:
-            if row.trigger == other.trigger and row.sources & other.sources:
-                assert {row.when, other.when} in exclusive, (row, other)
+    pairs = [
+        (row, other)
+        for i, row in enumerate(TABLE)
+        for other in TABLE[i + 1 :]
+        if row.trigger == other.trigger and row.sources & other.sources
+    ]
+    assert pairs, "some rows are told apart by their condition alone"
+    for row, other in pairs:
+        assert {row.when, other.when} in exclusive, (row, other)
 
 
 def test_every_state_is_reached_and_left() -> None:

@@ -165,9 +165,9 @@ def test_schemas_name_every_field_that_is_written(record: Path) -> None:
     found = read_elsewhere(record, "whole")
     for topic, but in (("/telemetry", set()), ("/events", {"args"}), ("/statistics", set())):
         channel = found["channels"][topic]
-        for message in found["messages"]:
-            if message["channel"] == channel["id"]:
-                assert set(message["content"]) - set(channel["schema"]["properties"]) <= but
+        contents = [message["content"] for message in found["messages"] if message["channel"] == channel["id"]]
+        assert contents, topic
+        assert set().union(*contents) - set(channel["schema"]["properties"]) <= but
 
 
 def chunk_starts(data: bytes) -> list[int]:
