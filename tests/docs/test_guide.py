@@ -1,5 +1,6 @@
 """What the guide says, against what is there."""
 
+import importlib.util
 import re
 from pathlib import Path
 
@@ -24,7 +25,7 @@ from fullpose_server.settings import Settings
 from tests.support.repository import ROOT
 
 GUIDE = ROOT / "docs" / "guide"
-PAGES = sorted([*GUIDE.glob("*.md"), *(ROOT / "examples").rglob("*.md")])
+PAGES = sorted([*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md"), *(ROOT / "examples").rglob("*.md")])
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -33,8 +34,10 @@ def test_links_and_paths_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", text):
         if not target.startswith("https://"):
             assert (page.parent / target).exists(), target
-    for path in re.findall(r"`((?:examples|docker|tools|docs|server|solver)/[\w./]+)`", text):
+    for path in re.findall(r"`((?:examples|docker|tools|docs|server|solver|bench|tests|web/src)/[\w./]+)`", text):
         assert (ROOT / path).exists(), path
+    for module in re.findall(r"python -m ((?:bench|tools|fullpose_server)[\w.]*)", text):
+        assert importlib.util.find_spec(module) is not None, module
 
 
 def test_index_has_every_page() -> None:
