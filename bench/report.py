@@ -3,11 +3,11 @@
     python -m bench.report [--against TREE] [--rounds 3] [--latency] [--json FILE]
 
 Steps of the methods, plans, start-up of the command line, of the library and of the server; with --latency the live
-source's and the E-stop's as well, by each tree's own bench. Each is measured in processes of its own, the trees in
-turns, so that a machine's mood meets both; the figure is the best of the rounds, and "spread" how far the rounds of
-this tree lay apart: a difference within it says nothing. Then the figures of the house (`tools/house.py`). Trees from
-before the packages were called fullpose and fullpose_server are understood. Warm caches: a round before the first
-compiles, and is thrown away.
+source's, the E-stop's and the loop's as well, by each tree's own bench. Each is measured in processes of its own, the
+trees in turns, so that a machine's mood meets both; the figure is the best of the rounds, and "spread" how far the
+rounds of this tree lay apart: a difference within it says nothing. Then the figures of the house (`tools/house.py`).
+Trees from before the packages were called fullpose and fullpose_server are understood. Warm caches: a round before the
+first compiles, and is thrown away.
 """
 
 import argparse
@@ -109,6 +109,9 @@ def latency(tree: Tree) -> dict[str, float]:
         r"^(round trip|latency in the rig process) \[us\] +p50 +(\S+) +p99 +(\S+)", live, re.M
     ):
         found |= {f"live: {name}, p50 [us]": float(p50), f"live: {name}, p99 [us]": float(p99)}
+    late = tree.bench("loop_lateness", "--seconds", "10", "--viewers", "20")
+    for p50, p99 in re.findall(r"^rig process, flying +(\S+) +(\S+)", late, re.M):
+        found |= {"loop: lateness, p50 [us]": float(p50), "loop: lateness, p99 [us]": float(p99)}
     for way, p50 in re.findall(r"^(flag|HTTP|WebSocket) +(\d\S*) ", stop, re.M):
         found[f"E-stop by {way}, p50 [ms]"] = float(p50)
     return found
