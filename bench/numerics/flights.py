@@ -24,7 +24,7 @@ from fullpose.errors import SolverError
 from fullpose.methods import METHODS
 from fullpose.plan import PlanOptions, plan
 from fullpose.preview.flight import PreviewFlight
-from fullpose.preview.replan import PreviewOptions
+from fullpose.preview.options import PreviewOptions
 from fullpose.rig import FRAMES, FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.solve import solve

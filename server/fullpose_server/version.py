@@ -1,8 +1,5 @@
-"""The version of this package."""
+"""The version of this package: that of the library, with which it is built and installed."""
 
-from importlib.metadata import PackageNotFoundError, version
+import fullpose
 
-try:
-    VERSION = version("fullpose")
-except PackageNotFoundError:  # run from a source tree that is not installed
-    VERSION = "0.0.0+source"
+VERSION = fullpose.__version__

@@ -91,6 +91,23 @@ def inner_chart(horizontal: bool, C: Array, d4: float, branch: float, d: Array) 
 
 
 @inner
+def project_inner(horizontal: bool, C: Array, near: Array, d: Array) -> None:
+    """d <- the exact solution for C with the inner angle of `near`, on its branch and at the turns nearest to it.
+
+    near, d (4,) [rad]; they may be the same array.
+    """
+    n0, n1, n2, n3 = near[0], near[1], near[2], near[3]
+    upward = math.sin(n1) > 0.0
+    if horizontal:
+        upward = not upward
+    inner_chart(horizontal, C, n3, 1.0 if upward else -1.0, d)
+    d[0] = nearest(d[0], n0)
+    d[1] = nearest(d[1], n1)
+    d[2] = nearest(d[2], n2)
+    d[3] = nearest(d[3], n3)
+
+
+@inner
 def project(horizontal: bool, C: Array, near: Array, d: Array) -> None:
     """d <- an exact solution for C next to `near`, in the chart that is farther from its fold.
 
@@ -100,13 +117,10 @@ def project(horizontal: bool, C: Array, near: Array, d: Array) -> None:
     cos_d3 = math.cos(near[2])
     sin_d2 = math.sin(near[1])
     n0, n1, n2, n3 = near[0], near[1], near[2], near[3]
-    if abs(cos_d3) >= abs(sin_d2):
-        base_chart(horizontal, C, n0, 1.0 if cos_d3 >= 0.0 else -1.0, d)
-    else:
-        upward = sin_d2 > 0.0
-        if horizontal:
-            upward = not upward
-        inner_chart(horizontal, C, n3, 1.0 if upward else -1.0, d)
+    if abs(cos_d3) < abs(sin_d2):
+        project_inner(horizontal, C, near, d)
+        return
+    base_chart(horizontal, C, n0, 1.0 if cos_d3 >= 0.0 else -1.0, d)
     d[0] = nearest(d[0], n0)
     d[1] = nearest(d[1], n1)
     d[2] = nearest(d[2], n2)

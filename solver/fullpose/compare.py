@@ -11,12 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from fullpose._typing import Array, Integers
 from fullpose.errors import MethodError
-from fullpose.methods import METHODS
-from fullpose.registry import method_options, parse_variant
+from fullpose.flight import check_flight
+from fullpose.registry import Variant, find_method, method_options, parse_variant
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Solution, limited_name
-from fullpose.solve import PLAN, PREVIEW, check_flight, solve
-from fullpose.variant import Variant
+from fullpose.solve import solve
 from fullpose.verify import Verification, verify
 
 # A sample is exact within 1e-9 deg: a hundred times the rounding of the geodesic error, far below any encoder.
@@ -147,14 +146,6 @@ def compare(
     return tuple(_row(t, C, rig, one, start, clock, progress) for one in asked)
 
 
-# Of the methods that are not step methods; both claim the limits.
-SOURCES = {
-    PLAN: "the planner: dynamic programming over both charts, then a smooth curve (mathematics, section 8)",
-    PREVIEW: "the exact step along a way re-planned over a horizon of known or predicted attitude "
-    "(mathematics, section 9)",
-}
-
-
 def _row(
     time: Array,
     attitude: Array,
@@ -164,25 +155,21 @@ def _row(
     clock: Callable[[], float] | None,
     progress: Callable[[str, int, int], None] | None,
 ) -> Row:
-    method = variant.method
-    options = method_options(method, variant.options)
-    if method in SOURCES:
-        claims, source = True, SOURCES[method]
-    else:
-        claims, source = METHODS[method].claims_limits, METHODS[method].source
+    method = find_method(variant.method)
+    options = method.chosen(method_options(method.name, variant.options))
 
     def report(done: int, total: int) -> None:
         if progress:
             progress(variant.label, done, total)
 
     try:
-        if clock and method not in SOURCES:
+        if clock and method.step is not None:
             # The first call loads the kernels, which is no part of a step.
-            chosen = METHODS[method]
-            own = chosen.options() if options is None else options
-            chosen.stepper(rig, own, None, attitude[0]).block(time[:2], attitude[:2])
-        solution = solve(time, attitude, rig, method, options=options, start=start, clock=clock, progress=report)
+            method.step.stepper(rig, options, None, attitude[0]).block(time[:2], attitude[:2])
+        solution = solve(time, attitude, rig, method.name, options=options, start=start, clock=clock, progress=report)
     except MethodError as refusal:
-        return Row(variant, claims, source, refusal=str(refusal))
+        return Row(variant, method.claims_limits, method.source, refusal=str(refusal))
     verification = verify(time, solution.angles, rig, attitude)
-    return Row(variant, claims, source, None, solution, verification, figures(solution, verification))
+    return Row(
+        variant, method.claims_limits, method.source, None, solution, verification, figures(solution, verification)
+    )

@@ -1,11 +1,16 @@
-"""The times [s] that a flight may have: increasing, and in a range where rates and accelerations stay numbers."""
+"""What a flight is: times that increase, in a range where rates and accelerations stay numbers, and attitudes that are
+rotations; and what a start pose of it may be."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fullpose._typing import Array
+from fullpose.errors import InputError
+from fullpose.rig import FRAMES, Rig
 
 FARTHEST = 1e10  # [s] from zero: three centuries, so that seconds since 1970 are inside and nanoseconds are not
 SHORTEST_STEP = 1e-7  # [s]; a lead at this interval is still short enough to be had
+ORTHONORMAL = 1e-9  # how far C C^T may be from the identity
 
 
 def bad_time(time: Array, before: float | None = None) -> tuple[int, str] | None:
@@ -34,3 +39,40 @@ def bad_time(time: Array, before: float | None = None) -> tuple[int, str] | None
 def shortest(value: float) -> str:
     """The shortest decimal that reads back to the same double, as a person would have written it: 0.05, 1, 1e+18."""
     return repr(float(value)).removesuffix(".0")
+
+
+def check_flight(time: ArrayLike, attitude: ArrayLike) -> tuple[Array, Array]:
+    """(time (n,), attitude (n, 3, 3)), copied. Raises `InputError` where they are no flight.
+
+    Copies, because a solution keeps its time read-only, and because kernels compile again for read-only arrays.
+    """
+    t = np.array(time, dtype=np.float64, order="C")
+    C = np.array(attitude, dtype=np.float64, order="C")
+    if t.ndim != 1 or not t.size:
+        raise InputError("time", None, t.shape, "(n,) seconds, at least one sample")
+    if C.shape != (len(t), 3, 3):
+        raise InputError("attitude", None, C.shape, f"({len(t)}, 3, 3), one matrix a sample")
+    if found := bad_time(t):
+        raise InputError("time", found[0], float(t[found[0]]), found[1])
+    bad = np.flatnonzero(~np.isfinite(C).all(axis=(1, 2)))
+    if bad.size:
+        raise InputError("attitude", int(bad[0]), C[bad[0]].tolist(), "finite numbers")
+    off = np.abs(C @ np.swapaxes(C, 1, 2) - np.eye(3)).max(axis=(1, 2))
+    bad = np.flatnonzero((off > ORTHONORMAL) | (np.linalg.det(C) < 0.0))
+    if bad.size:
+        raise InputError("attitude", int(bad[0]), C[bad[0]].tolist(), "a rotation matrix (C C^T = 1, det C = +1)")
+    return t, C
+
+
+def check_start(start: ArrayLike | None, rig: Rig) -> Array | None:
+    """The start pose (4,) [rad], or None. Raises `InputError` where it is not a pose of the rig."""
+    if start is None:
+        return None
+    pose = np.ascontiguousarray(start, dtype=np.float64)
+    if pose.shape != (4,) or not np.isfinite(pose).all():
+        raise InputError("start", None, pose.tolist(), "four finite angles, base first")
+    for i in rig.geometry.frames:
+        if not rig.position_min[i] <= pose[i] <= rig.position_max[i]:
+            allowed = f"between {rig.position_min[i]:.6g} and {rig.position_max[i]:.6g} rad for this rig"
+            raise InputError(f"start of the {FRAMES[i]} frame", None, float(pose[i]), allowed)
+    return pose

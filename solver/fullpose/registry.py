@@ -1,30 +1,138 @@
-"""Methods by name with their options, from text or JSON: names and types are those of their dataclasses."""
+"""Every method in one table, `plan` and `preview` too, in the order of the command line; and their options, from text
+or JSON: names and types are those of their dataclasses.
 
-from collections.abc import Mapping
-from dataclasses import asdict, fields
-from typing import Any
+The planner is loaded by those who plan: a row holds its options, which are light, and imports the rest when it is run.
+"""
 
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+from fullpose._typing import Array, Clock, Progress
 from fullpose.errors import MethodError
 from fullpose.methods import METHODS
-from fullpose.solve import PLAN, PREVIEW
-from fullpose.variant import Variant
+from fullpose.methods.base import StepMethod, Stepper
+from fullpose.preview.options import PreviewOptions
+from fullpose.rig import Rig
+from fullpose.trajectory.options import PlanOptions
 
-PLAN_SOURCE = "the whole flight at once: dynamic programming on both charts, then a sparse quadratic programme"
-PREVIEW_SOURCE = "the exact step along a way re-planned over a horizon of known or predicted attitude"
+if TYPE_CHECKING:
+    from fullpose.plan import Plan
+
+OptionValue = bool | int | float | str
+DEFAULT = "plan"  # of `fullpose.solve` and of the command line
+
+
+class Sees(StrEnum):
+    """How much of a flight a method sees when it chooses a sample's angles."""
+
+    FLIGHT = "the whole flight"
+    AHEAD = "a part of it ahead"
+    SAMPLE = "one sample at a time"
+
+
+@dataclass(frozen=True)
+class Method:
+    """A row of the table.
+
+    `plans` is there for what sees the whole flight, `begins` for the rest: (rig, options, near which pose (4,) [rad] to
+    start or None for home, time (n,) [s], attitude (n, 3, 3)) -> the flight in progress. `step` is what can be begun
+    without a flight: from a stream's first attitude, or on a rig that stands.
+    """
+
+    name: str
+    source: str  # paper, section, equation
+    claims_limits: bool
+    options: type[Any]  # a frozen dataclass whose fields have defaults
+    sees: Sees
+    plans: "Callable[[Array, Array, Rig, Array | None, Any, Progress | None, Clock | None], Plan] | None" = None
+    begins: Callable[[Rig, Any, Array | None, Array, Array], Stepper] | None = None
+    step: StepMethod | None = None
+
+    def chosen(self, options: Any) -> Any:
+        """The options given, or the defaults for None. Raises `MethodError` for those of another method."""
+        if options is None:
+            return self.options()
+        if not isinstance(options, self.options):
+            raise MethodError(f"options of {self.name}: expected {self.options.__name__}, not {type(options).__name__}")
+        return options
+
+
+def _plan(
+    time: Array, attitude: Array, rig: Rig, near: Array | None, options: Any, progress: Progress | None,
+    clock: Clock | None,
+) -> "Plan":  # fmt: skip
+    from fullpose.plan import plan
+
+    return plan(time, attitude, rig, near, options=options, progress=progress, clock=clock)
+
+
+def _preview(rig: Rig, options: Any, near: Array | None, time: Array, attitude: Array) -> Stepper:
+    from fullpose.preview.flight import PreviewFlight
+
+    return PreviewFlight(rig, options, near, time, attitude)
+
+
+def _stepwise(step: StepMethod) -> Method:
+    def begins(rig: Rig, options: Any, near: Array | None, time: Array, attitude: Array) -> Stepper:  # noqa: ARG001
+        return step.stepper(rig, options, near, attitude[0])
+
+    return Method(step.name, step.source, step.claims_limits, step.options, Sees.SAMPLE, begins=begins, step=step)
+
+
+_ROWS = (
+    Method(
+        "plan",
+        "the whole flight at once: dynamic programming on both charts, then a sparse quadratic programme "
+        "(mathematics, section 8)",
+        claims_limits=True,
+        options=PlanOptions,
+        sees=Sees.FLIGHT,
+        plans=_plan,
+    ),
+    Method(
+        "preview",
+        "the exact step along a trajectory re-planned over a horizon of known or predicted attitude "
+        "(mathematics, section 9)",
+        claims_limits=True,
+        options=PreviewOptions,
+        sees=Sees.AHEAD,
+        begins=_preview,
+    ),
+    *map(_stepwise, METHODS.values()),
+)
+
+REGISTRY: Mapping[str, Method] = {row.name: row for row in _ROWS}
+
+
+def find_method(name: str) -> Method:
+    """The row of a method. Raises `MethodError` where there is none of this name."""
+    if name not in REGISTRY:
+        raise MethodError(f"no method named {name!r}: expected one of {', '.join(REGISTRY)}")
+    return REGISTRY[name]
+
+
+def find_step(name: str) -> StepMethod:
+    """A method that can be streamed. Raises `MethodError` for one that sees more of a flight, or an unknown name."""
+    step = find_method(name).step
+    if step is None:
+        known = ", ".join(row.name for row in _ROWS if row.step is not None)
+        raise MethodError(f"method {name!r} cannot be streamed: expected one of {known}")
+    return step
 
 
 def method_names() -> tuple[str, ...]:
     """All methods, in the order of the command line."""
-    return (PLAN, PREVIEW, *METHODS)
+    return tuple(REGISTRY)
 
 
 def method_options(method: str, values: Mapping[str, Any]) -> Any:
     """The options object of a method; None, its defaults, where nothing is given.
 
-    Raises `MethodError` for an unknown method or option, or a value of another type.
+    Raises `MethodError` for an unknown method or option, or a value of another type or outside its range.
     """
-    if method not in method_names():
-        raise MethodError(f"no method named {method!r}: expected one of {', '.join(method_names())}")
+    row = find_method(method)
     if not values:
         return None
     defaults = option_defaults(method)
@@ -33,20 +141,17 @@ def method_options(method: str, values: Mapping[str, Any]) -> Any:
         if name not in defaults:
             known = ", ".join(defaults) or "none"
             raise MethodError(f"method {method} has no option {name!r}: its options are {known}")
-        wanted = type(defaults[name])
+        wanted = str if isinstance(defaults[name], str) else type(defaults[name])
         if not (isinstance(value, wanted) or (wanted is float and type(value) is int)):
             raise MethodError(f"option {name} of {method}: {value!r}: expected {wanted.__name__}")
         kept[name] = wanted(value)
-    try:
-        return _options_type(method)(**kept)
-    except ValueError as error:
-        raise MethodError(f"options of {method}: {error}") from None
+    return row.options(**kept)
 
 
 def option_defaults(method: str) -> dict[str, Any]:
-    """Names and defaults of a method's options."""
-    kind = _options_type(method)
-    return {field.name: value for field, value in zip(fields(kind), asdict(kind()).values(), strict=True)}
+    """Names and defaults of a method's options. Raises `MethodError` where there is no such method."""
+    kind = find_method(method).options
+    return {each.name: value for each, value in zip(fields(kind), asdict(kind()).values(), strict=True)}
 
 
 def parse_option(text: str, method: str) -> tuple[str, Any]:
@@ -54,7 +159,7 @@ def parse_option(text: str, method: str) -> tuple[str, Any]:
     name, equals, value = text.partition("=")
     if not equals:
         raise MethodError(f"option {text!r}: expected name=value")
-    default = option_defaults(method).get(name) if method in method_names() else None
+    default = option_defaults(method).get(name)
     try:
         if isinstance(default, bool):
             return name, {"true": True, "false": False}[value.lower()]
@@ -63,6 +168,18 @@ def parse_option(text: str, method: str) -> tuple[str, Any]:
     except (ValueError, KeyError):
         raise MethodError(f"option {name} of {method}: {value!r}: expected {type(default).__name__}") from None
     return name, value
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A method as it is asked for in a comparison: its name, its options, and a label that tells it from the others.
+
+    `options` by name, those not given at their defaults; `variant` checks them.
+    """
+
+    method: str
+    label: str
+    options: Mapping[str, OptionValue] = field(default_factory=dict)
 
 
 def variant(method: str, options: Mapping[str, Any] | None = None, label: str | None = None) -> Variant:
@@ -81,8 +198,7 @@ def variant(method: str, options: Mapping[str, Any] | None = None, label: str | 
 def parse_variant(text: str) -> Variant:
     """The variant of `method` or `method:name=value:name=value`. Raises `MethodError`."""
     method, *options = text.strip().split(":")
-    if method not in method_names():
-        raise MethodError(f"no method named {method!r}: expected one of {', '.join(method_names())}")
+    find_method(method)
     return variant(method, dict(parse_option(option, method) for option in options))
 
 
@@ -91,11 +207,3 @@ def _written(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return str(value).removesuffix(".0") if isinstance(value, float) else str(value)
-
-
-def _options_type(method: str) -> type[Any]:
-    if method in (PLAN, PREVIEW):
-        from fullpose.plan import PlanOptions, PreviewOptions  # the planner is loaded by those who plan
-
-        return PlanOptions if method == PLAN else PreviewOptions
-    return METHODS[method].options

@@ -127,7 +127,7 @@ def feasible(method: str, rig_name: str, name: str) -> bool:
 
 @pytest.mark.parametrize("name", FLIGHTS)
 @pytest.mark.parametrize("rig", ["vertical-4", "horizontal-4"])
-@pytest.mark.parametrize("method", ["plan", "exact", "alm", "fixed_joint", "follow_up"])
+@pytest.mark.parametrize("method", ["plan", "exact", "alm:mode=exact", "fixed_joint", "follow_up"])
 def test_these_methods_fly_all_of_them(method: str, rig: str, name: str) -> None:
     """What the flights' README says; of preview too, which takes a minute a flight."""
     assert feasible(method, rig, name)

@@ -116,16 +116,19 @@ def test_variants_of_one_method_side_by_side() -> None:
     scenario = SCENARIOS["small_angles"]
     time, C = scenario.time[:200], dcm_from_quaternion(scenario.quaternion[:200])
     seen: list[str] = []
-    asked = ["alm:mode=open_loop", "alm", variant("alm", {"mode": "open_loop", "growth": 4.0}, "steep")]
+    asked = ["alm:mode=open_loop", "alm", variant("alm", {"mode": "open_loop", "growth": 4.0}, "steep"), "exact"]
     rows = compare(time, C, RIGS["vertical-4"], asked, progress=lambda label, *_: seen.append(label))
-    labels = ["alm:mode=open_loop", "alm", "steep"]
+    labels = ["alm:mode=open_loop", "alm", "steep", "exact"]
     assert [row.variant.label for row in rows] == list(dict.fromkeys(seen)) == labels
-    assert [row.variant.method for row in rows] == ["alm"] * 3
-    open_loop, exact, steep = (row.figures for row in rows)
+    assert [row.variant.method for row in rows] == ["alm"] * 3 + ["exact"]
+    open_loop, closed_loop, steep, exact = (row.figures for row in rows)
     assert open_loop is not None
-    assert exact is not None
+    assert closed_loop is not None
     assert steep is not None
+    assert exact is not None
     assert exact.exact_share == 1.0
+    assert closed_loop.max_error < 0.1 * open_loop.max_error
+    assert closed_loop.max_error > 1e6 * exact.max_error  # the paper's own step, not our curve in its place
     assert open_loop.exact_share < 0.5
     assert steep.exact_share < 0.5
 

@@ -7,10 +7,9 @@ import pytest
 
 from fullpose.attitude import dcm_from_euler
 from fullpose.errors import CancelledError, InputError, MethodError
-from fullpose.methods import METHODS
 from fullpose.methods.alm import AlmOptions
 from fullpose.rig import builtin_rigs
-from fullpose.solve import BLOCK, solve
+from fullpose.solve import BLOCK, solve, solve_flight
 
 RIGS = builtin_rigs()
 RIG = RIGS["vertical-4"]
@@ -18,7 +17,7 @@ TIME = np.arange(0.0, 0.1, 1e-3)
 C = dcm_from_euler(TIME, 0.5 * TIME, 0.1 * TIME)
 
 
-@pytest.mark.parametrize("method", ["exact", "alm", "three_axis"])
+@pytest.mark.parametrize("method", ["plan", "exact", "three_axis"])
 @pytest.mark.parametrize("samples", [1, 2, 15, 16, 17])
 def test_flights_of_any_length(method: str, samples: int) -> None:
     solution = solve(TIME[:samples], C[:samples], RIGS["vertical-3"] if method == "three_axis" else RIG, method)
@@ -55,14 +54,14 @@ def with_(array: np.ndarray, index: object, value: float) -> np.ndarray:
 )
 def test_what_is_no_flight_is_refused(time: object, attitude: np.ndarray, name: str, sample: int | None) -> None:
     with pytest.raises(InputError) as caught:
-        solve(time, attitude, RIG)  # type: ignore[arg-type]
+        solve(time, attitude, RIG, "exact")  # type: ignore[arg-type]
     assert (caught.value.name, caught.value.sample) == (name, sample)
 
 
 @pytest.mark.parametrize("start", [[0.0, 0.0, 0.0], [0.0, np.nan, 0.0, 0.0], [0.0, 0.0, 0.0, 2.0]])
 def test_what_is_no_start_is_refused(start: list[float]) -> None:
     with pytest.raises(InputError, match="start"):
-        solve(TIME, C, RIGS["vertical-limited"], start=start)
+        solve(TIME, C, RIGS["vertical-limited"], "exact", start=start)
 
 
 def test_unknown_method_and_wrong_options() -> None:
@@ -74,14 +73,14 @@ def test_unknown_method_and_wrong_options() -> None:
 
 def test_timings_are_the_callers_clock() -> None:
     ticks = itertools.count()
-    solution = solve(TIME, C, RIG, clock=lambda: float(next(ticks)))
+    solution = solve(TIME, C, RIG, "exact", clock=lambda: float(next(ticks)))
     np.testing.assert_allclose(solution.step_time[:BLOCK], 1.0 / BLOCK)
     assert solution.solve_time == next(ticks) - 1
 
 
 def test_progress_and_cancelling() -> None:
     seen: list[tuple[int, int]] = []
-    solve(TIME, C, RIG, progress=lambda done, total: seen.append((done, total)))
+    solve(TIME, C, RIG, "exact", progress=lambda done, total: seen.append((done, total)))
     assert seen[-1] == (100, 100)
     assert [done for done, _ in seen] == sorted({done for done, _ in seen})
 
@@ -89,12 +88,12 @@ def test_progress_and_cancelling() -> None:
         raise CancelledError("enough")
 
     with pytest.raises(CancelledError):
-        solve(TIME, C, RIG, progress=stop)
+        solve(TIME, C, RIG, "exact", progress=stop)
 
 
 def test_the_callers_arrays_are_left_alone_and_the_solutions_are_read_only() -> None:
     time, attitude = TIME.copy(), C.copy()
-    solution = solve(time, attitude, RIG)
+    solution = solve(time, attitude, RIG, "exact")
     time[0], attitude[0, 0, 0] = -1.0, 5.0  # still writable, and not shared
     assert solution.time[0] == 0.0
     with pytest.raises(ValueError, match="read-only"):
@@ -104,13 +103,11 @@ def test_the_callers_arrays_are_left_alone_and_the_solutions_are_read_only() -> 
 
 def test_start_chooses_the_pose_the_flight_starts_from() -> None:
     start = np.array([0.5, 0.0, -0.5, 2.0 * np.pi])
-    np.testing.assert_allclose(solve(TIME, C, RIG, start=start).angles[0], start, atol=1e-14)
-    np.testing.assert_allclose(solve(TIME, C, RIG).angles[0], 0.0, atol=1e-14)
+    np.testing.assert_allclose(solve(TIME, C, RIG, "exact", start=start).angles[0], start, atol=1e-14)
+    np.testing.assert_allclose(solve(TIME, C, RIG, "exact").angles[0], 0.0, atol=1e-14)
 
 
-def test_the_registry_is_whole() -> None:
-    assert list(METHODS)[:2] == ["exact", "alm"]
-    for name, method in METHODS.items():
-        assert method.name == name
-        assert method.source
-        assert method.options() == method.options()
+def test_the_default_is_the_command_lines() -> None:
+    assert solve(TIME, C, RIG).method == "plan"
+    assert solve_flight(TIME, C, RIG).plan is not None
+    assert solve_flight(TIME, C, RIG, "exact").plan is None

@@ -96,25 +96,11 @@ def _solve(
 ) -> tuple["Solution", "Plan | None"]:
     """The solution; of method plan the whole plan, too, which says what the verdict rests on."""
     from fullpose.registry import method_options, parse_option
-    from fullpose.solve import PLAN
-    from fullpose.solve import solve as solve_flight
+    from fullpose.solve import solve_flight
 
     options = method_options(method, dict(parse_option(text, method) for text in texts))
     with progress_bar(method) as progress:
-        if method == PLAN:
-            from fullpose.plan import plan
-
-            whole = plan(
-                flight.time,
-                attitude,
-                rig,
-                start=flight.start,
-                options=options,
-                progress=progress,
-                clock=time.perf_counter,
-            )
-            return whole.solution, whole
-        solution = solve_flight(
+        solved = solve_flight(
             flight.time,
             attitude,
             rig,
@@ -124,7 +110,7 @@ def _solve(
             clock=time.perf_counter,
             progress=progress,
         )
-    return solution, None
+    return solved.solution, solved.plan
 
 
 def _summary(report: dict[str, Any]) -> str:

@@ -9,9 +9,9 @@ from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.compare import compare, variants
 from fullpose.errors import MethodError
+from fullpose.registry import Variant
 from fullpose.resample import resample
 from fullpose.rig import Rig
-from fullpose.variant import Variant
 from fullpose_server.formats.compare_report import comparison_report
 from fullpose_server.pages.compare_page import compare_page
 from fullpose_server.planning.compare_length import check_length, check_samples

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Any, Literal
 from uuid import uuid4
 
+from fullpose.registry import Variant
 from fullpose.rig import FrameLimits, Geometry, Rig
-from fullpose.variant import Variant
 from fullpose_server.errors import NotFoundError
 
 log = logging.getLogger(__name__)

@@ -12,13 +12,13 @@ from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_dcm
 from fullpose.errors import MethodError
 from fullpose.lead import lead_in, lead_out
-from fullpose.plan import Plan, plan
+from fullpose.plan import Plan
 from fullpose.plan.verdict import margins
 from fullpose.registry import method_options
 from fullpose.resample import Resampled, continuous, resample
 from fullpose.rig import Rig
 from fullpose.solution import Solution
-from fullpose.solve import PLAN, solve
+from fullpose.solve import solve_flight
 from fullpose.verify import Violation, verify
 from fullpose_server.formats.plan_folder import make_plan, rig_hash, write_plan
 from fullpose_server.formats.report import make_report, margins_report, verdict_report, why_infeasible
@@ -105,13 +105,12 @@ def _solve(request: PlanRequest, at: Array, q: Array, progress: Progress) -> _Ma
     clock = time.perf_counter
     if request.remedy is not None:
         return _remedied(request, at, attitude, start, options, tell)
-    if request.method == PLAN:
-        # Asked directly: the planner keeps room for its own leads and says what its verdict rests on.
-        whole = plan(at, attitude, request.rig, start=start, options=options, clock=clock, progress=tell)
-        return _Made(whole.solution, q, whole.verdict.statement, lambda: _planned(whole), whole)
-    solution = solve(
+    solved = solve_flight(
         at, attitude, request.rig, method=request.method, options=options, start=start, clock=clock, progress=tell
     )
+    solution, made = solved.solution, solved.plan
+    if made is not None:  # it keeps room for its own leads and says what its verdict rests on
+        return _Made(solution, q, made.verdict.statement, lambda: _planned(made), made)
     verdict = "Every sample checked against the limits by code apart from the solver; another method may find more."
     return _Made(solution, q, verdict, lambda: _leads(solution, request.rate_hz))
 

@@ -15,14 +15,16 @@ held again, for most flights to the end.
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
 from fullpose._jit import inlined, inner, kernel
 from fullpose._typing import Array, Codes, Counts, Integers
+from fullpose.charts import project_inner
 from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose, rotation_error
-from fullpose.limits import WEIGHT, limit_table
+from fullpose.limits import WEIGHT, inside, limit_table
 from fullpose.methods.base import Block, StepMethod
 from fullpose.methods.start_pose import start_pose
 from fullpose.methods.state import (
@@ -51,52 +53,55 @@ from fullpose.methods.state import (
     stand,
     wish,
 )
+from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.step import box_least_squares, quadratic_step, solve_symmetric, squared_damping
 
-# What the step is asked for: the flight's own increment, as in the paper, whose linearisation error adds up; the
-# increment from the present attitude to the next, which does not drift; that, and then the exact solution curve.
-OPEN_LOOP, CLOSED_LOOP, EXACT_MODE = MODES = ("open_loop", "closed_loop", "exact")
+
+class Mode(StrEnum):
+    """What the step is asked for.
+
+    closed_loop: the increment from the present attitude to the next, which does not drift; what its linearisation
+    leaves is the method's error. open_loop: the flight's own increment, as in the paper, whose linearisation error adds
+    up. exact: the closed loop, and then the whole exact solution curve. exact_inner: the closed loop, and then the
+    inner frame held and the other three solved exactly, the second optimisation that the paper proposes.
+    """
+
+    CLOSED_LOOP = "closed_loop"
+    OPEN_LOOP = "open_loop"
+    EXACT = "exact"
+    EXACT_INNER = "exact_inner"
+
+
+# As the kernel reads them.
+CLOSED_LOOP, OPEN_LOOP, EXACT_CURVE, EXACT_INNER = range(len(Mode))
 
 
 @dataclass(frozen=True)
-class AlmOptions:
+class AlmOptions(Options):
     """Raises `MethodError` where a value is out of range.
 
-    mode: `open_loop`, `closed_loop` or `exact` (`MODES`). penalty: r of the first iteration; growth: beta, its factor
-    from one to the next; max_penalty: where it stops growing; residual: |h| [rad] and complementarity at which the
-    iteration stops; max_iterations: the cap.
-    avoidance, centring [rad/s], homing [1/s], recovery: as in `ExactOptions`; with zero gains f is the paper's.
+    mode: see `Mode`. penalty: r of the first iteration; growth: beta, its factor from one to the next; max_penalty:
+    where it stops growing; residual: |h| [rad] and complementarity at which the iteration stops; max_iterations: its
+    cap. avoidance, centring [rad/s], homing [1/s], recovery: as in `ExactOptions`; with zero gains f is the paper's.
     """
 
-    mode: str = "exact"
-    penalty: float = 10.0
-    growth: float = 3.0
-    max_penalty: float = 1e8
-    residual: float = 1e-13
-    max_iterations: int = 30
-    avoidance: float = 2.0
-    centring: float = 2.0
-    homing: float = 0.0
-    recovery: float = 0.5
+    mode: Mode = Mode.CLOSED_LOOP
+    penalty: float = ranged(10.0, 1e-3, 1e8)
+    growth: float = ranged(3.0, 1.0, 1e3)
+    max_penalty: float = ranged(1e8, 1e-3, 1e10)
+    residual: float = ranged(1e-13, 1e-15, 1.0)
+    max_iterations: int = ranged(30, 1, 1000)
+    avoidance: float = ranged(2.0, 0.0, 1e6)
+    centring: float = ranged(2.0, 0.0, 1e6)
+    homing: float = ranged(0.0, 0.0, 1e6)
+    recovery: float = ranged(0.5, 1e-6, 1.0)
 
     def __post_init__(self) -> None:
-        if self.mode not in MODES:
-            raise MethodError(f"option mode = {self.mode!r}: expected one of {', '.join(MODES)}")
-        for name, least, most in (
-            ("penalty", 1e-3, 1e8),
-            ("growth", 1.0, 1e3),
-            ("max_penalty", self.penalty, 1e10),
-            ("residual", 1e-15, 1.0),
-            ("max_iterations", 1, 1000),
-            ("avoidance", 0.0, 1e6),
-            ("centring", 0.0, 1e6),
-            ("homing", 0.0, 1e6),
-            ("recovery", 1e-6, 1.0),
-        ):
-            if not least <= getattr(self, name) <= most:
-                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected {least:g} to {most:g}")
+        super().__post_init__()
+        if self.max_penalty < self.penalty:
+            raise MethodError(f"option max_penalty = {self.max_penalty!r}: expected at least penalty, {self.penalty:g}")
 
 
 HELD = math.radians(1e-9)  # in open loop, a sample within this of the attitude has nothing to make up for
@@ -214,6 +219,16 @@ def possible(J: Array, volume: float, weight: Array, nowhere: Array, e: Array, w
     ) and reaches(J, step, e, residual)
 
 
+@inner
+def hold_inner(horizontal: bool, G: Array, work: Array) -> None:
+    """work[POSE] <- the exact pose for G (3, 3) with the inner angle of work[POSE], where that lies inside the box."""
+    y = work[GUESS]
+    project_inner(horizontal, G, work[POSE], y)
+    if inside(y, work[LO], work[HI], work[TOLERANCE]):
+        for i in range(4):
+            work[POSE, i] = y[i]
+
+
 @kernel
 def alm_block(
     horizontal: bool,
@@ -221,8 +236,7 @@ def alm_block(
     table: Array,
     gains: Array,
     tuning: Array,
-    feedback: bool,
-    exact: bool,
+    mode: int,
     time: Array,
     attitude: Array,
     state: Array,
@@ -233,8 +247,7 @@ def alm_block(
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 
-    gains: avoidance, centring, homing, recovery; tuning: of `multiplier_step`; feedback: close the loop;
-    exact: put the sample on the exact solution curve.
+    gains: avoidance, centring, homing, recovery; tuning: of `multiplier_step`; mode: a `Mode` by its place.
     """
     work = np.empty((ROWS, 4))
     room = np.empty((MULTIPLIER_ROWS, 5))
@@ -259,7 +272,7 @@ def alm_block(
             prepare(table, state, h, work, lo_code, hi_code)
             wish(table, d, h, gains, work[WISH])
             volume = four_axis_pose(horizontal, d, F, J, work[NULL])
-            if feedback:
+            if mode != OPEN_LOOP:
                 on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
             else:
                 on_target = int(state[CODE]) == EXACT or rotation_error(F, target, e) <= HELD
@@ -271,7 +284,11 @@ def alm_block(
             iterations[k] = abs(count)
             code = EXACT
             # Not settled: at the cap, or because no step inside the box has this increment.
-            if count < 0 and not exact and not possible(J, volume, table[WEIGHT], nowhere, e, work, tuning[3]):
+            if (
+                count < 0
+                and mode != EXACT_CURVE
+                and not possible(J, volume, table[WEIGHT], nowhere, e, work, tuning[3])
+            ):
                 for i in range(4):
                     work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
                 binding = box_least_squares(J, e, work[DAMPING], work[WISH], work[LO], work[HI], work[STEP], A)
@@ -284,10 +301,13 @@ def alm_block(
                 work[GUESS, i] = d[i] + work[STEP, i]
                 # Within the residual the settled step may be outside its box; the limits hold to the last digit.
                 work[POSE, i] = min(max(work[GUESS, i], work[LO, i]), work[HI, i])
-            if exact:
+            if mode == EXACT_CURVE:
                 _, code = finish(horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code)
-            elif code == EXACT and not on_target:
-                code = int(state[CODE])
+            elif code == EXACT:
+                if mode == EXACT_INNER:
+                    hold_inner(horizontal, G, work)
+                if not on_target:
+                    code = int(state[CODE])
         for i in range(4):
             angles[k, i] = work[POSE, i]
         limited[k] = code
@@ -301,7 +321,7 @@ class AlmStepper:
         if not rig.geometry.redundant:
             raise MethodError(f"alm needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
         self._rig = rig
-        self._mode = options.mode
+        self._mode = list(Mode).index(options.mode)
         self._table = limit_table(rig)
         self._gains = np.array([options.avoidance, options.centring, options.homing, options.recovery])
         self._tuning = np.array(
@@ -324,8 +344,7 @@ class AlmStepper:
             self._table,
             self._gains,
             self._tuning,
-            self._mode != OPEN_LOOP,
-            self._mode == EXACT_MODE,
+            self._mode,
             time,
             attitude,
             self._state,

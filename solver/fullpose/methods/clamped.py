@@ -47,7 +47,8 @@ from fullpose.methods.state import (
     settle,
     stand,
 )
-from fullpose.methods.unlimited import require, require_fourth_axis
+from fullpose.methods.unlimited import require_fourth_axis
+from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.step import DAMPED_BELOW, solve_symmetric, squared_damping
@@ -58,21 +59,16 @@ LOCKED_DAMPING = 1e-12  # shares the step between two free frames with parallel 
 
 
 @dataclass(frozen=True)
-class ClampedOptions:
+class ClampedOptions(Options):
     """tolerance [rad] and cap of the iteration to the target; each takes up to four lockings.
 
     recovery: share of the smallest frame acceleration that brakes the return to the attitude after a limited sample,
     as in `exact`; not in the paper, whose frames have no accelerations to keep.
     """
 
-    tolerance: float = 1e-14
-    max_iterations: int = 8
-    recovery: float = 0.5
-
-    def __post_init__(self) -> None:
-        require("tolerance", self.tolerance, 0.0, 1.0)
-        require("max_iterations", self.max_iterations, 1, 1000)
-        require("recovery", self.recovery, 0.0, 1.0, open_low=True)
+    tolerance: float = ranged(1e-14, 0.0, 1.0)
+    max_iterations: int = ranged(8, 1, 1000)
+    recovery: float = ranged(0.5, 0.0, 1.0, open=True)
 
 
 @kernel

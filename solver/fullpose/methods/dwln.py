@@ -34,9 +34,9 @@ from fullpose.methods.unlimited import (
     exact_start,
     first_sample,
     keep_sample,
-    require,
     require_fourth_axis,
 )
+from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.step import solve_symmetric
 
@@ -47,28 +47,18 @@ LONGEST = 0.2  # [rad] a frame in one iterate; the linearisation says nothing ab
 
 
 @dataclass(frozen=True)
-class DwlnOptions:
+class DwlnOptions(Options):
     """Constants of the weights and the damping, tolerance [rad] and cap of the iteration, and the exact re-solve."""
 
-    base_weight: float = 1.0  # K
-    outer_gain: float = 2.0  # A
-    outer_width: float = 0.2  # B1, in sin d2
-    middle_width: float = 0.2  # B2, in cos d3
-    damping_below: float = 0.05  # sigma_0
-    max_damping: float = 0.01  # s_max
-    tolerance: float = math.radians(1e-3)
-    max_iterations: int = 20
+    base_weight: float = ranged(1.0, 1e-6, 1e6)  # K
+    outer_gain: float = ranged(2.0, 0.0, 1e6)  # A
+    outer_width: float = ranged(0.2, 1e-3, 1e3)  # B1, in sin d2
+    middle_width: float = ranged(0.2, 1e-3, 1e3)  # B2, in cos d3
+    damping_below: float = ranged(0.05, 0.0, 1.0)  # sigma_0
+    max_damping: float = ranged(0.01, 0.0, 1.0)  # s_max
+    tolerance: float = ranged(math.radians(1e-3), 1e-15, 1.0)
+    max_iterations: int = ranged(20, 1, 1000)
     exact: bool = True
-
-    def __post_init__(self) -> None:
-        require("base_weight", self.base_weight, 1e-6, 1e6)
-        require("outer_gain", self.outer_gain, 0.0, 1e6)
-        require("outer_width", self.outer_width, 1e-3, 1e3)
-        require("middle_width", self.middle_width, 1e-3, 1e3)
-        require("damping_below", self.damping_below, 0.0, 1.0)
-        require("max_damping", self.max_damping, 0.0, 1.0)
-        require("tolerance", self.tolerance, 1e-15, 1.0)
-        require("max_iterations", self.max_iterations, 1, 1000)
 
 
 @kernel

@@ -32,12 +32,13 @@ from fullpose.methods.state import (
     stand,
     wish,
 )
+from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.step import quadratic_step
 
 
 @dataclass(frozen=True)
-class ExactOptions:
+class ExactOptions(Options):
     """How the redundant frame is used. Raises `MethodError` where a gain is negative or not a number.
 
     The pose nearest (in the rig's weights) to the last one plus these movements along the self-motion is taken; with
@@ -48,17 +49,10 @@ class ExactOptions:
     to the attitude after a limited sample.
     """
 
-    avoidance: float = 2.0
-    centring: float = 2.0
-    homing: float = 0.0
-    recovery: float = 0.5
-
-    def __post_init__(self) -> None:
-        for name in ("avoidance", "centring", "homing"):
-            if not 0.0 <= getattr(self, name) < np.inf:
-                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected a number, 0 or more")
-        if not 0.0 < self.recovery <= 1.0:
-            raise MethodError(f"option recovery = {self.recovery!r}: expected a number in (0, 1]")
+    avoidance: float = ranged(2.0, 0.0)
+    centring: float = ranged(2.0, 0.0)
+    homing: float = ranged(0.0, 0.0)
+    recovery: float = ranged(0.5, 0.0, 1.0, open=True)
 
 
 @kernel

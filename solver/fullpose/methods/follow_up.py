@@ -18,6 +18,7 @@ import numpy as np
 from fullpose._jit import kernel
 from fullpose._typing import Array, Counts, Integers
 from fullpose.charts import base_chart, nearest
+from fullpose.errors import MethodError
 from fullpose.limits import ACCELERATION, RATE, approach_rate, limit_box, limit_table
 from fullpose.methods.base import StepMethod, Stepper
 from fullpose.methods.start_pose import start_pose
@@ -28,9 +29,9 @@ from fullpose.methods.unlimited import (
     first_sample,
     keep_sample,
     open_rig,
-    require,
     require_fourth_axis,
 )
+from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 
@@ -40,21 +41,20 @@ HALF_PI = 0.5 * math.pi
 
 
 @dataclass(frozen=True)
-class FollowUpOptions:
+class FollowUpOptions(Options):
     """Where the base turns aside and back, as the outer angle's distance from +-90 deg [rad]; the servo."""
 
-    aside_within: float = math.radians(15.0)
-    back_beyond: float = math.radians(20.0)
-    bandwidth: float = 10.0  # [rad/s]
-    max_rate: float = math.radians(200.0)  # [rad/s]
-    max_acceleration: float = math.radians(1000.0)  # [rad/s^2]
+    aside_within: float = ranged(math.radians(15.0), 0.0, HALF_PI)
+    back_beyond: float = ranged(math.radians(20.0), 0.0, HALF_PI)
+    bandwidth: float = ranged(10.0, 0.0, 1e3, open=True)  # [rad/s]
+    max_rate: float = ranged(math.radians(200.0), 0.0, open=True)  # [rad/s]
+    max_acceleration: float = ranged(math.radians(1000.0), 0.0, open=True)  # [rad/s^2]
 
     def __post_init__(self) -> None:
-        require("aside_within", self.aside_within, 0.0, HALF_PI)
-        require("back_beyond", self.back_beyond, self.aside_within, HALF_PI)
-        require("bandwidth", self.bandwidth, 0.0, 1e3, open_low=True)
-        require("max_rate", self.max_rate, 0.0, math.inf, open_low=True)
-        require("max_acceleration", self.max_acceleration, 0.0, math.inf, open_low=True)
+        super().__post_init__()
+        if self.back_beyond < self.aside_within:
+            expected = f"at least aside_within, {self.aside_within:g}"
+            raise MethodError(f"option back_beyond = {self.back_beyond!r}: expected {expected}")
 
 
 @kernel

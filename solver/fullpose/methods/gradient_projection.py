@@ -25,9 +25,9 @@ from fullpose.methods.unlimited import (
     exact_start,
     first_sample,
     keep_sample,
-    require,
     require_fourth_axis,
 )
+from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.step import least_norm, squared_damping
 
@@ -35,17 +35,12 @@ NEAREST = 1e-6  # 1 - u^2 is no smaller in the gradient, on the limit and beyond
 
 
 @dataclass(frozen=True)
-class GradientProjectionOptions:
+class GradientProjectionOptions(Options):
     """Gains of the two parts of H [rad/s for a unit gradient], and the largest self-motion asked for [rad/s]."""
 
-    limits: float = 0.05
-    singularity: float = 0.5
-    max_rate: float = 1.0
-
-    def __post_init__(self) -> None:
-        require("limits", self.limits, 0.0, 1e3)
-        require("singularity", self.singularity, 0.0, 1e3)
-        require("max_rate", self.max_rate, 0.0, 1e3)
+    limits: float = ranged(0.05, 0.0, 1e3)
+    singularity: float = ranged(0.5, 0.0, 1e3)
+    max_rate: float = ranged(1.0, 0.0, 1e3)
 
 
 @kernel

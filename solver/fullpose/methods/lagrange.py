@@ -26,12 +26,13 @@ from fullpose.methods.unlimited import (
     keep_sample,
     require_fourth_axis,
 )
+from fullpose.options import Options
 from fullpose.rig import Rig
 from fullpose.step import least_norm, squared_damping
 
 
 @dataclass(frozen=True)
-class LagrangeOptions:
+class LagrangeOptions(Options):
     """The method has none: W is the rig's."""
 
 

@@ -16,6 +16,7 @@ from fullpose._jit import kernel
 from fullpose._typing import Array, Integers
 from fullpose.charts import nearest
 from fullpose.methods.base import Block, StepMethod, Stepper
+from fullpose.options import Options
 from fullpose.rig import Rig, Y
 
 # Below this the first axis is lost in rounding; the attitude error of any first angle is no larger than it.
@@ -23,7 +24,7 @@ POLE = 1e-15
 
 
 @dataclass(frozen=True)
-class ThreeAxisOptions:
+class ThreeAxisOptions(Options):
     """The method has none."""
 
 

@@ -98,10 +98,3 @@ def require_fourth_axis(name: str, rig: Rig) -> None:
     """Raises `MethodError` where the rig has no redundant axis."""
     if not rig.geometry.redundant:
         raise MethodError(f"{name} needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
-
-
-def require(name: str, value: float, low: float, high: float, open_low: bool = False) -> None:
-    """Raises `MethodError` where an option is not a number in [low, high], or (low, high] with `open_low`."""
-    if not (low <= value <= high) or (open_low and value == low) or math.isnan(value):
-        bracket = "(" if open_low else "["
-        raise MethodError(f"option {name} = {value!r}: expected a number in {bracket}{low:g}, {high:g}]")

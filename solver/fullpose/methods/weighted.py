@@ -21,25 +21,20 @@ from fullpose.methods.unlimited import (
     exact_start,
     first_sample,
     keep_sample,
-    require,
     require_fourth_axis,
 )
+from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.step import least_norm, squared_damping
 
 
 @dataclass(frozen=True)
-class WeightedOptions:
+class WeightedOptions(Options):
     """Base weights far from and at cos d3 = 0, times the rig's own, and the width of the change in cos d3."""
 
-    far: float = 100.0
-    near: float = 0.1
-    width: float = 0.35
-
-    def __post_init__(self) -> None:
-        require("far", self.far, 1e-6, 1e6)
-        require("near", self.near, 1e-6, 1e6)
-        require("width", self.width, 1e-3, 10.0)
+    far: float = ranged(100.0, 1e-6, 1e6)
+    near: float = ranged(0.1, 1e-6, 1e6)
+    width: float = ranged(0.35, 1e-3, 10.0)
 
 
 @kernel

@@ -3,7 +3,8 @@
 from fullpose.plan.plan import Plan, plan
 from fullpose.plan.verdict import Margins, Verdict
 from fullpose.preview.flight import PreviewFlight
-from fullpose.preview.replan import Ahead, PreviewOptions, Replan
+from fullpose.preview.options import PreviewOptions
+from fullpose.preview.replan import Ahead, Replan
 from fullpose.preview.stepper import PreviewStepper
 from fullpose.trajectory.options import PlanOptions
 

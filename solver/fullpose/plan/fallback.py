@@ -5,7 +5,7 @@ import numpy as np
 from fullpose._typing import Array
 from fullpose.methods import METHODS
 from fullpose.preview.flight import PreviewFlight
-from fullpose.preview.replan import PreviewOptions
+from fullpose.preview.options import PreviewOptions
 from fullpose.rig import Rig
 from fullpose.verify import attitude_errors, payload_attitudes
 

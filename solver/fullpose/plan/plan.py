@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from fullpose._typing import Array, Codes, Counts, Progress
 from fullpose.errors import InputError
+from fullpose.flight import check_flight, check_start
 from fullpose.methods.start_pose import start_pose
 from fullpose.plan.lead import lead_in, lead_out
 from fullpose.plan.least_error import BestEffort, afresh, least_error
@@ -72,8 +73,6 @@ def plan(
 
     Raises `InputError` for arrays that are no flight, a start outside the rig's range or a start rate above its limits.
     """
-    from fullpose.solve import check_flight, check_start  # solve() itself offers this method
-
     options = options or PlanOptions()
     t, C = check_flight(time, attitude)
     near = check_start(start, rig)

@@ -6,8 +6,9 @@ import numpy as np
 
 from fullpose._typing import Array
 from fullpose.methods.base import Block
+from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import SPACING
-from fullpose.preview.replan import Ahead, PreviewOptions
+from fullpose.preview.replan import Ahead
 from fullpose.preview.stepper import PreviewStepper
 from fullpose.rig import Rig
 

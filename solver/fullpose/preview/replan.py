@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fullpose._typing import Array
-from fullpose.errors import MethodError
 from fullpose.limits import limit_table
+from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import attitudes_ahead
 from fullpose.rig import Rig
 from fullpose.trajectory.beam_search import search
@@ -25,70 +25,7 @@ from fullpose.trajectory.sqp import refine
 START_BEAM = 1000  # states kept a stage then: the way begins anywhere
 HOME_COST = 1e-3  # [1/(rad^2 s)]: decides where nothing else does
 ROOM_FOR = math.radians(60.0)  # [rad/s] body rate that room is measured against
-# What a way may take at most, 150 MB and some seconds: live, the rig waits at rest for the first one.
-MOST = {"beam": 4096, "slides": 64, "smoothing": 100}
-MOST_STAGES = 1000
 FIT_WINDOW = 0.1  # [s] of attitude that the present body rate is taken from
-
-
-@dataclass(frozen=True)
-class PreviewOptions:
-    """How far ahead, how often and how thoroughly. Raises `MethodError` where an option is out of its range.
-
-    preview_s: future that is known [s], of a flight from a file; live, the source sends it. horizon_s: how far the way
-    goes [s] (where more is known, as far as that). replan_s: flight time between two ways [s]. delay_s: flight time
-    until a way is there [s], to simulate a slow re-plan. settling_s: how long the body's acceleration is taken to last
-    [s]; 0: the prediction is the present rate.
-    """
-
-    preview_s: float = 0.0
-    horizon_s: float = 1.5
-    replan_s: float = 0.05
-    delay_s: float = 0.0
-    settling_s: float = 0.3
-    stage_s: float = 0.05
-    beam: int = 192  # states kept a stage
-    smoothing: int = 3  # iterations of the refinement; 0: the way as the search found it
-    slides: int = 5  # tried from each
-    reserve: float = 0.1  # share of the acceleration limits that a way leaves to what was not foreseen
-    foresight_s: float = 1.0  # the weight of what is predicted falls by e over this
-    singularity_cost: float = 0.3  # [1/s]; the next too
-    range_cost: float = 1.0
-    room_cost: float = 1.0  # [1/s] where there is room for a body rate of 54 deg/s in any direction, and no more
-    room_s: float = 0.5  # [s] that the room must last
-    rate_cost: float = 1.0
-    acceleration_cost: float = 0.1
-    excess_cost: float = 1e3
-    end_cost: float = 1.0  # [s] of standing at the last stage
-    following: float = 20.0  # [1/s] bandwidth with which the way is followed
-    avoidance: float = 2.0  # as in `exact`, without a way
-    centring: float = 2.0
-    recovery: float = 0.5
-
-    def __post_init__(self) -> None:
-        for name in ("preview_s", "delay_s", "settling_s", "singularity_cost", "range_cost", "room_cost", "rate_cost",
-                     "acceleration_cost", "excess_cost", "end_cost", "avoidance", "centring"):  # fmt: skip
-            if not 0.0 <= getattr(self, name) < np.inf:
-                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected a number, 0 or more")
-        for name in ("horizon_s", "replan_s", "stage_s", "foresight_s", "room_s", "following"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected a number above 0")
-        if not 0.0 <= self.reserve < 1.0:
-            raise MethodError(f"option reserve = {self.reserve!r}: expected a number in [0, 1)")
-        if not 0.0 < self.recovery <= 1.0:
-            raise MethodError(f"option recovery = {self.recovery!r}: expected a number in (0, 1]")
-        if self.beam < 1 or self.slides < 2 or self.smoothing < 0:
-            found = f"beam = {self.beam}, slides = {self.slides}, smoothing = {self.smoothing}"
-            raise MethodError(f"options {found}: expected 1, 2 and 0 or more")
-        for name, most in MOST.items():
-            if getattr(self, name) > most:
-                raise MethodError(f"option {name} = {getattr(self, name)!r}: expected {most} at most")
-        stages = max(self.horizon_s, self.preview_s) / self.stage_s
-        if stages > MOST_STAGES:
-            raise MethodError(
-                f"options horizon_s = {self.horizon_s!r}, preview_s = {self.preview_s!r}, stage_s = {self.stage_s!r}: "
-                f"expected {MOST_STAGES} stages at most, these are {stages:.3g}"
-            )
 
 
 @dataclass(frozen=True)

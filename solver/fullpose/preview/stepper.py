@@ -45,8 +45,9 @@ from fullpose.methods.state import (
     stand,
     wish,
 )
+from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import Track
-from fullpose.preview.replan import FIT_WINDOW, Ahead, PreviewOptions, Replan
+from fullpose.preview.replan import FIT_WINDOW, Ahead, Replan
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.step import quadratic_step

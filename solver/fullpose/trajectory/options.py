@@ -3,25 +3,37 @@
 import math
 from dataclasses import dataclass
 
+from fullpose.errors import MethodError
+from fullpose.options import Options, ranged
+
 DEG = math.pi / 180.0
 
 
 @dataclass(frozen=True)
-class PlanOptions:
-    """Grid, cost and refinement of a plan; the defaults are the measured ones (docs/decisions/0005-planner.md)."""
+class PlanOptions(Options):
+    """Grid, cost and refinement of a plan; the defaults are the measured ones (docs/decisions/0005-planner.md).
 
-    grid: float = 1.0 * DEG  # [rad] spacing of the nodes on the self-motion curve
-    stage: float = 0.05  # [s] between the stages of the dynamic programme
-    knot: float = 0.025  # [s] between the knots of the refinement's spline
-    fine_grid: float = 0.25 * DEG  # [rad] of the grid that a verdict of "infeasible" rests on
-    singularity_margin: float = 0.05  # sin^2 d2 + cos^2 d3 below which the cost rises
-    singularity_cost: float = 4.0  # [1/s] at the singularity itself, beside rates squared as shares of their limits
-    acceleration_cost: float = 0.5  # accelerations squared as shares of their limits, beside rates
-    home_cost: float = 1e-3  # (angle - home)^2 [1/rad^2/s]: decides where nothing else does
-    reserve: float = 1e-3  # share of a limit that the refinement leaves unused, for what falls between its rows
-    trust: float = 20.0 * DEG  # [rad] the farthest one iteration moves along the self-motion
-    iterations: int = 12  # of the refinement, at most
-    alternatives: int = 9  # other chains tried before the accelerations are called the obstacle
-    window: float = 12.0  # [s] of one refinement problem; longer flights go window by window
+    Raises `MethodError` where a value is outside its range: a finer grid, stage or knot than its least asks for more
+    memory than a machine has.
+    """
+
+    grid: float = ranged(1.0 * DEG, 0.02 * DEG, 30.0 * DEG)  # [rad] between nodes on the self-motion curve
+    stage: float = ranged(0.05, 1e-3, 10.0)  # [s] between the stages of the dynamic programme
+    knot: float = ranged(0.025, 1e-3, 10.0)  # [s] between the knots of the refinement's spline
+    fine_grid: float = ranged(0.25 * DEG, 0.02 * DEG, 30.0 * DEG)  # [rad] that a verdict of "infeasible" rests on
+    singularity_margin: float = ranged(0.05, 1e-6, 2.0)  # sin^2 d2 + cos^2 d3 below which the cost rises
+    singularity_cost: float = ranged(4.0, 0.0, 1e6)  # [1/s] there, beside rates squared as shares of their limits
+    acceleration_cost: float = ranged(0.5, 0.0, 1e6)  # accelerations squared as shares of their limits, beside rates
+    home_cost: float = ranged(1e-3, 0.0, 1e6)  # (angle - home)^2 [1/rad^2/s]: decides where nothing else does
+    reserve: float = ranged(1e-3, 0.0, 0.5)  # share of a limit that the refinement leaves for what lies between rows
+    trust: float = ranged(20.0 * DEG, 0.01 * DEG, math.pi)  # [rad] the farthest one iteration moves
+    iterations: int = ranged(12, 1, 1000)  # of the refinement, at most
+    alternatives: int = ranged(9, 0, 100)  # other node paths tried before the accelerations are called the obstacle
+    window: float = ranged(12.0, 0.1, 1e4)  # [s] of one refinement problem; longer flights go window by window
     best_effort: bool = True  # an infeasible flight is brought inside the limits, at the least attitude error
-    overlap: float = 3.0  # [s] that a window shares with the one before
+    overlap: float = ranged(3.0, 0.0, 1e4)  # [s] that a window shares with the one before
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.overlap >= self.window:
+            raise MethodError(f"option overlap = {self.overlap!r}: expected less than window, {self.window:g}")

@@ -1,4 +1,4 @@
-"""`alm`: the multiplier iteration against the closed form, its three modes, its iteration counts, its limits."""
+"""`alm`: the multiplier iteration against the closed form, its four modes, its iteration counts, its limits."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from fullpose.attitude import dcm_from_quaternion
 from fullpose.compare import EXACT_WITHIN, failures
 from fullpose.errors import MethodError
 from fullpose.kinematics import jacobian, null_vector
-from fullpose.methods.alm import MULTIPLIER_ROWS, AlmOptions, multiplier_step
+from fullpose.methods.alm import MULTIPLIER_ROWS, AlmOptions, Mode, multiplier_step
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import SCENARIOS, random_flight
 from fullpose.solution import EXACT
@@ -19,7 +19,7 @@ from fullpose.verify import verify
 
 RIGS = builtin_rigs()
 DEG = np.pi / 180.0
-MODES = ("open_loop", "closed_loop", "exact")
+MODES = tuple(Mode)
 DEFAULT = AlmOptions()
 TUNING = np.array([DEFAULT.penalty, DEFAULT.growth, DEFAULT.max_penalty, DEFAULT.residual, DEFAULT.max_iterations])
 
@@ -59,7 +59,7 @@ def test_the_iteration_finds_the_closed_form(seed: int, width: float) -> None:
     mode=st.sampled_from(MODES),
     uneven=st.booleans(),
 )
-def test_random_flights_never_exceed_a_limit(seed: int, rate: float, name: str, mode: str, uneven: bool) -> None:
+def test_random_flights_never_exceed_a_limit(seed: int, rate: float, name: str, mode: Mode, uneven: bool) -> None:
     time, q = random_flight(seed, 4.0, 1000.0, rate * DEG)
     if uneven:
         keep = np.random.default_rng(seed).random(len(time)) < 0.4
@@ -68,7 +68,7 @@ def test_random_flights_never_exceed_a_limit(seed: int, rate: float, name: str, 
     solution = solve(time, C, RIGS[name], "alm", AlmOptions(mode=mode))
     assert verify(time, solution.angles, RIGS[name]).violations == ()
     assert solution.iterations.max() <= DEFAULT.max_iterations
-    if mode == "exact" and solution.limited_samples < len(time):
+    if mode is Mode.EXACT and solution.limited_samples < len(time):
         assert solution.matrix_error[solution.limited == EXACT].max() <= 1e-14
 
 
@@ -76,7 +76,7 @@ def test_random_flights_never_exceed_a_limit(seed: int, rate: float, name: str, 
 def test_scenarios_it_can_fly(name: str) -> None:
     scenario = SCENARIOS[name]
     C = dcm_from_quaternion(scenario.quaternion)
-    solution = solve(scenario.time, C, RIGS["vertical-4"], "alm")
+    solution = solve(scenario.time, C, RIGS["vertical-4"], "alm", AlmOptions(mode=Mode.EXACT))
     assert solution.limited_samples == 0
     assert solution.matrix_error.max() <= 1e-14
     assert 6 <= np.median(solution.iterations) <= 10
@@ -84,14 +84,48 @@ def test_scenarios_it_can_fly(name: str) -> None:
     np.testing.assert_allclose(solution.angles, solve(scenario.time, C, RIGS["vertical-4"], "exact").angles, atol=1e-8)
 
 
-def test_the_three_modes_are_the_papers_order_of_accuracy() -> None:
+def linearisation(angles: np.ndarray) -> np.ndarray:
+    """What a step along the tangent may leave [rad], (n,): half the square of the frames' ways together."""
+    return 0.5 * np.abs(np.diff(angles, axis=0, prepend=angles[:1])).sum(axis=1) ** 2
+
+
+@pytest.mark.parametrize("name", ["small_angles", "large_no_limit", "level", "loop", "both_beyond_90", "non_uniform"])
+def test_by_default_the_loop_is_closed_and_nothing_else_mends_the_step(name: str) -> None:
+    """What is left is the last step's linearisation: never more, and not the exact curve in its place."""
+    scenario = SCENARIOS[name]
+    C = dcm_from_quaternion(scenario.quaternion)
+    assert AlmOptions().mode is Mode.CLOSED_LOOP
+    solution = solve(scenario.time, C, RIGS["vertical-4"], "alm")
+    assert solution.limited_samples == 0
+    assert (solution.error <= linearisation(solution.angles) + 1e-12).all()
+    if name != "loop":  # about one axis all along: its tangent is its curve
+        assert solution.error.max() > 1e-9
+
+
+@pytest.mark.parametrize("rig", ["vertical-4", "horizontal-4"])
+def test_with_the_inner_frame_held_the_rest_is_exact_away_from_its_fold(rig: str) -> None:
+    """Zhao's second optimisation: the inner angle is the closed loop's own, the other three make the attitude."""
+    time, q = random_flight(3, 4.0, 1000.0, 60.0 * DEG)
+    C = dcm_from_quaternion(q)
+    options = {"avoidance": 0.0, "centring": 0.0}
+    held = solve(time, C, RIGS[rig], "alm", AlmOptions(mode=Mode.EXACT_INNER, **options))  # type: ignore[arg-type]
+    folded = np.abs(np.sin(held.angles[:, 1])) < 0.05
+    exact = (held.limited == EXACT) & ~folded
+    assert exact.mean() > 0.5
+    assert held.matrix_error[exact].max() <= 1e-13
+    closed = solve(time, C, RIGS[rig], "alm", AlmOptions(**options))  # type: ignore[arg-type]
+    assert np.abs(held.angles[:, 3] - closed.angles[:, 3]).max() > 0.0  # each goes on from its own pose
+    np.testing.assert_allclose(held.angles[1, 3], closed.angles[1, 3], atol=1e-12)  # the first step is the same
+
+
+def test_the_modes_are_the_papers_order_of_accuracy() -> None:
     """Open loop drifts with the linearisation, closed loop keeps its last step's share, exact has none."""
     scenario = SCENARIOS["large_no_limit"]
     C = dcm_from_quaternion(scenario.quaternion)
     paper = {"avoidance": 0.0, "centring": 0.0}
     worst = [
         solve(scenario.time, C, RIGS["vertical-4"], "alm", AlmOptions(mode=mode, **paper)).matrix_error.max()
-        for mode in MODES
+        for mode in (Mode.OPEN_LOOP, Mode.CLOSED_LOOP, Mode.EXACT)
     ]
     assert 1e-4 < worst[0] < 1e-2
     assert 1e-8 < worst[1] < 1e-5
@@ -101,14 +135,14 @@ def test_the_three_modes_are_the_papers_order_of_accuracy() -> None:
 def test_published_open_loop_error_at_small_angles() -> None:
     """1e-6 to 1e-7 in the paper; our small-angle flight and sample rate are not its own, so the order is the claim."""
     scenario = SCENARIOS["small_angles"]
-    options = AlmOptions(mode="open_loop", avoidance=0.0, centring=0.0)
+    options = AlmOptions(mode=Mode.OPEN_LOOP, avoidance=0.0, centring=0.0)
     solution = solve(scenario.time, dcm_from_quaternion(scenario.quaternion), RIGS["vertical-4"], "alm", options)
     assert solution.matrix_error.max() < 1e-5
     assert solution.limited_samples == 0
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_where_the_limit_binds_samples_are_marked(mode: str) -> None:
+def test_where_the_limit_binds_samples_are_marked(mode: Mode) -> None:
     scenario = SCENARIOS["over_limit"]
     solution = solve(
         scenario.time,
@@ -126,13 +160,13 @@ def test_where_the_limit_binds_samples_are_marked(mode: str) -> None:
 def test_the_cap_is_kept_and_said() -> None:
     scenario = SCENARIOS["large_no_limit"]
     time, C = scenario.time[:500], dcm_from_quaternion(scenario.quaternion)[:500]
-    options = AlmOptions(max_iterations=3, mode="closed_loop")
+    options = AlmOptions(max_iterations=3, mode=Mode.CLOSED_LOOP)
     solution = solve(time, C, RIGS["vertical-4"], "alm", options)
     assert solution.iterations.max() == 3
 
 
-@pytest.mark.parametrize("mode", ["open_loop", "closed_loop"])
-def test_a_step_that_the_cap_ended_is_the_iterations_own(mode: str) -> None:
+@pytest.mark.parametrize("mode", [Mode.OPEN_LOOP, Mode.CLOSED_LOOP])
+def test_a_step_that_the_cap_ended_is_the_iterations_own(mode: Mode) -> None:
     """Not the closed form in its place: the error shows where the iteration was cut off."""
     scenario = SCENARIOS["large_no_limit"]
     C = dcm_from_quaternion(scenario.quaternion)
@@ -147,7 +181,7 @@ def test_a_step_that_the_cap_ended_is_the_iterations_own(mode: str) -> None:
 def test_open_loop_says_which_limit_left_the_attitude_behind() -> None:
     scenario = SCENARIOS["over_limit_loop"]
     C = dcm_from_quaternion(scenario.quaternion)
-    solution = solve(scenario.time, C, RIGS["vertical-limited"], "alm", AlmOptions(mode="open_loop"))
+    solution = solve(scenario.time, C, RIGS["vertical-limited"], "alm", AlmOptions(mode=Mode.OPEN_LOOP))
     first = int(np.flatnonzero(solution.limited)[0])
     missed = solution.error[first:] > EXACT_WITHIN
     assert (solution.limited[first:][missed] != EXACT).all()

@@ -118,9 +118,9 @@ def test_limited_samples_name_the_frame_and_the_limit() -> None:
     assert solution.blocking is not None
     assert (solution.blocking.frame, solution.blocking.limit) == ("inner", "position")
     slow = Rig("slow", Geometry.VERTICAL_4, (FrameLimits(0.0, 0.0), frame, frame, FrameLimits(max_rate=0.2)))
-    assert limited_name(int(solve(time, C, slow).limited.max())) == ("inner", "rate")
+    assert limited_name(int(solve(time, C, slow, "exact").limited.max())) == ("inner", "rate")
     heavy = Rig("heavy", Geometry.VERTICAL_4, (FrameLimits(0.0, 0.0), frame, frame, FrameLimits(max_acceleration=0.2)))
-    assert limited_name(int(solve(time, C, heavy).limited.max())) == ("inner", "acceleration")
+    assert limited_name(int(solve(time, C, heavy, "exact").limited.max())) == ("inner", "acceleration")
 
 
 def test_the_error_left_is_no_more_than_the_limit_costs() -> None:
@@ -193,7 +193,7 @@ def test_blocks_do_not_matter() -> None:
 
     stepper = METHODS["exact"].stepper(rig, ExactOptions(), None, C[0])
     single = np.vstack([stepper.block(time[k : k + 1], C[k : k + 1]).angles for k in range(len(time))])
-    np.testing.assert_array_equal(single, solve(time, C, rig).angles)
+    np.testing.assert_array_equal(single, solve(time, C, rig, "exact").angles)
 
 
 def test_homing_returns_home_along_the_self_motion() -> None:
@@ -203,7 +203,7 @@ def test_homing_returns_home_along_the_self_motion() -> None:
     start = np.array([60.0 * DEG, 0.0, 0.0, 0.0])
     options = ExactOptions(avoidance=0.0, centring=0.0, homing=1.0)
     angles = solve(time, C, rig, "exact", options, start=start).angles
-    nearest_home = solve(time[:1], C[:1], rig).angles[0]
+    nearest_home = solve(time[:1], C[:1], rig, "exact").angles[0]
     assert np.linalg.norm(angles[-1]) < np.linalg.norm(angles[0])
     np.testing.assert_allclose(angles[-1], nearest_home, atol=1e-6)
 

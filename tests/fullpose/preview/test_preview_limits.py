@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fullpose.attitude import dcm_from_quaternion
-from fullpose.preview.replan import PreviewOptions
+from fullpose.preview.options import PreviewOptions
 from fullpose.rig import FrameLimits, Geometry, Rig
 from fullpose.scenarios import random_flight
 from fullpose.solution import EXACT, limited_name

@@ -8,8 +8,7 @@ from fastapi import APIRouter, Response
 from starlette.responses import FileResponse
 
 from fullpose.compare import variants
-from fullpose.registry import parse_variant, variant
-from fullpose.variant import Variant
+from fullpose.registry import Variant, parse_variant, variant
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.compare import CompareIn, ComparisonOut, MethodIn

@@ -8,11 +8,9 @@ from typing import Annotated, Any
 import numpy as np
 from fastapi import APIRouter, Query, Response
 
-from fullpose.methods import METHODS
-from fullpose.registry import PLAN_SOURCE, PREVIEW_SOURCE, method_options, option_defaults
+from fullpose.registry import DEFAULT, REGISTRY, method_options, option_defaults
 from fullpose.resample import check_length
 from fullpose.rig import FRAMES
-from fullpose.solve import PLAN, PREVIEW
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.plans import (
@@ -41,13 +39,9 @@ router = APIRouter(tags=["plans"])
 @router.get("/methods")
 def list_methods() -> list[MethodOut]:
     """The methods that plans, solves and comparisons may name."""
-    ahead = [
-        MethodOut(name=name, source=source, claims_limits=True, options=option_defaults(name))
-        for name, source in ((PLAN, PLAN_SOURCE), (PREVIEW, PREVIEW_SOURCE))
-    ]
-    return ahead + [
+    return [
         MethodOut(name=m.name, source=m.source, claims_limits=m.claims_limits, options=option_defaults(m.name))
-        for m in METHODS.values()
+        for m in REGISTRY.values()
     ]
 
 
@@ -102,8 +96,8 @@ async def add_remedy(plan: str, body: RemedyIn, response: Response, services: Se
         trajectory=of.trajectory,
         rig=of.rig,
         rig_hash=rig_hash(entry.rig),
-        method=PLAN,
-        options=of.options if of.method == PLAN else {},
+        method=DEFAULT,  # every trial of a remedy is the planner's
+        options=of.options if of.method == DEFAULT else {},
         start_deg=of.start_deg,
         rate_hz=services.settings.rig_rate_hz,
         remedy={"of": plan, **body.model_dump()},

@@ -9,13 +9,12 @@ import numpy as np
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from pydantic import TypeAdapter, ValidationError
 
-from fullpose.errors import InputError, MethodError, SolverError
-from fullpose.flight import bad_time
-from fullpose.methods import METHODS
+from fullpose.errors import InputError, SolverError
+from fullpose.flight import bad_time, check_flight
 from fullpose.methods.base import Stepper
-from fullpose.registry import method_options
+from fullpose.registry import find_step, method_options
 from fullpose.rig import Rig
-from fullpose.solve import check_flight, solve
+from fullpose.solve import solve
 from fullpose.verify import attitude_errors, payload_attitudes, verify
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import ApiError, problem_of
@@ -121,10 +120,7 @@ class _Flight:
     def __init__(self, services: Services, message: OpenSolve) -> None:
         self._rig = services.rigs.get(message.rig).rig
         self._most = services.settings.max_solve_samples
-        if message.method not in METHODS:
-            known = ", ".join(METHODS)
-            raise MethodError(f"method {message.method!r} cannot be streamed: expected one of {known}")
-        self._method = METHODS[message.method]
+        self._method = find_step(message.method)
         options = method_options(message.method, dict(message.options))
         self._options = self._method.options() if options is None else options
         given = message.start_deg

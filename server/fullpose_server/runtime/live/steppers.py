@@ -76,9 +76,12 @@ class LiveStep(Protocol):
 
 def live_step(rig: Rig, settings: LiveSettings, dt: float) -> LiveStep:
     """The step for one rig and settings, its kernels compiled. Raises `LiveError` where they do not go together."""
-    from fullpose.solve import PREVIEW
+    from fullpose.registry import REGISTRY, Sees  # heavier than the rest of the rig process: only where it is used
 
-    if settings.method != PREVIEW:
+    known = [row.name for row in REGISTRY.values() if row.sees is Sees.AHEAD or row.step is not None]
+    if settings.method not in known:
+        raise LiveError(f"method {settings.method!r}: expected one of {', '.join(known)}")
+    if REGISTRY[settings.method].sees is not Sees.AHEAD:
         return MethodStep(rig, settings, dt)
     from fullpose_server.runtime.live.preview_stepper import PreviewStep  # with it comes the planner
 
@@ -120,13 +123,9 @@ class MethodStep:
 
     def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
         # Heavier than the rest of the rig process: only where it is used.
-        from fullpose.methods import METHODS
-        from fullpose.registry import method_options
-        from fullpose.solve import PREVIEW
+        from fullpose.registry import find_step, method_options
 
-        if settings.method not in METHODS:
-            raise LiveError(f"method {settings.method!r}: expected one of {', '.join(METHODS)}, {PREVIEW}")
-        self._method = METHODS[settings.method]
+        self._method = find_step(settings.method)
         if not self._method.claims_limits:
             raise LiveError(f"method {settings.method} does not keep the limits: it cannot fly a live source")
         self._rig = rig
