@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from fullpose._typing import Array, Integers
 from fullpose.errors import MethodError
 from fullpose.flight import check_flight
-from fullpose.registry import Variant, find_method, method_options, parse_variant
+from fullpose.registry import Stepwise, Variant, find_method, method_options, parse_variant
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Solution, limited_name
 from fullpose.solve import solve
@@ -163,7 +163,7 @@ def _row(
             progress(variant.label, done, total)
 
     try:
-        if clock and method.step is not None:
+        if clock and isinstance(method, Stepwise) and method.step is not None:
             # The first call loads the kernels, which is no part of a step.
             method.step.stepper(rig, options, None, attitude[0]).block(time[:2], attitude[:2])
         solution = solve(time, attitude, rig, method.name, options=options, start=start, clock=clock, progress=report)

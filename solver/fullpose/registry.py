@@ -34,21 +34,13 @@ class Sees(StrEnum):
 
 @dataclass(frozen=True)
 class Method:
-    """A row of the table.
-
-    `plans` is there for what sees the whole flight, `begins` for the rest: (rig, options, near which pose (4,) [rad] to
-    start or None for home, time (n,) [s], attitude (n, 3, 3)) -> the flight in progress. `step` is what can be begun
-    without a flight: from a stream's first attitude, or on a rig that stands.
-    """
+    """A row of the table: a `Planner` or a `Stepwise`."""
 
     name: str
     source: str  # paper, section, equation
     claims_limits: bool
     options: type[Any]  # a frozen dataclass whose fields have defaults
     sees: Sees
-    plans: "Callable[[Array, Array, Rig, Array | None, Any, Progress | None, Clock | None], Plan] | None" = None
-    begins: Callable[[Rig, Any, Array | None, Array, Array], Stepper] | None = None
-    step: StepMethod | None = None
 
     def chosen(self, options: Any) -> Any:
         """The options given, or the defaults for None. Raises `MethodError` for those of another method."""
@@ -57,6 +49,26 @@ class Method:
         if not isinstance(options, self.options):
             raise MethodError(f"options of {self.name}: expected {self.options.__name__}, not {type(options).__name__}")
         return options
+
+
+@dataclass(frozen=True)
+class Planner(Method):
+    """A method that sees the whole flight: (time (n,) [s], attitude (n, 3, 3), rig, near, options, progress, clock)."""
+
+    plans: "Callable[[Array, Array, Rig, Array | None, Any, Progress | None, Clock | None], Plan]"
+
+
+@dataclass(frozen=True)
+class Stepwise(Method):
+    """A method that goes sample by sample.
+
+    begins: (rig, options, near which pose (4,) [rad] to start or None for home, time (n,) [s], attitude (n, 3, 3)) ->
+    the flight in progress. step: what can be begun without a flight, from a stream's first attitude or on a rig that
+    stands.
+    """
+
+    begins: Callable[[Rig, Any, Array | None, Array, Array], Stepper]
+    step: StepMethod | None = None
 
 
 def _plan(
@@ -74,15 +86,15 @@ def _preview(rig: Rig, options: Any, near: Array | None, time: Array, attitude: 
     return PreviewFlight(rig, options, near, time, attitude)
 
 
-def _stepwise(step: StepMethod) -> Method:
+def _stepwise(step: StepMethod) -> Stepwise:
     def begins(rig: Rig, options: Any, near: Array | None, time: Array, attitude: Array) -> Stepper:  # noqa: ARG001
         return step.stepper(rig, options, near, attitude[0])
 
-    return Method(step.name, step.source, step.claims_limits, step.options, Sees.SAMPLE, begins=begins, step=step)
+    return Stepwise(step.name, step.source, step.claims_limits, step.options, Sees.SAMPLE, begins=begins, step=step)
 
 
-_ROWS = (
-    Method(
+_ROWS: tuple[Planner | Stepwise, ...] = (
+    Planner(
         "plan",
         "the whole flight at once: dynamic programming on both charts, then a sparse quadratic programme "
         "(mathematics, section 8)",
@@ -91,7 +103,7 @@ _ROWS = (
         sees=Sees.FLIGHT,
         plans=_plan,
     ),
-    Method(
+    Stepwise(
         "preview",
         "the exact step along a trajectory re-planned over a horizon of known or predicted attitude "
         "(mathematics, section 9)",
@@ -103,10 +115,10 @@ _ROWS = (
     *map(_stepwise, METHODS.values()),
 )
 
-REGISTRY: Mapping[str, Method] = {row.name: row for row in _ROWS}
+REGISTRY: Mapping[str, Planner | Stepwise] = {row.name: row for row in _ROWS}
 
 
-def find_method(name: str) -> Method:
+def find_method(name: str) -> Planner | Stepwise:
     """The row of a method. Raises `MethodError` where there is none of this name."""
     if name not in REGISTRY:
         raise MethodError(f"no method named {name!r}: expected one of {', '.join(REGISTRY)}")
@@ -115,11 +127,10 @@ def find_method(name: str) -> Method:
 
 def find_step(name: str) -> StepMethod:
     """A method that can be streamed. Raises `MethodError` for one that sees more of a flight, or an unknown name."""
-    step = find_method(name).step
-    if step is None:
-        known = ", ".join(row.name for row in _ROWS if row.step is not None)
-        raise MethodError(f"method {name!r} cannot be streamed: expected one of {known}")
-    return step
+    match find_method(name):
+        case Stepwise(step=StepMethod() as step):
+            return step
+    raise MethodError(f"method {name!r} cannot be streamed: expected one of {', '.join(METHODS)}")
 
 
 def method_names() -> tuple[str, ...]:

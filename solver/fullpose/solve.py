@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from fullpose._typing import Array, Clock, Codes, Counts, Progress
 from fullpose.flight import check_flight, check_start
 from fullpose.methods.base import Stepper
-from fullpose.registry import DEFAULT, find_method
+from fullpose.registry import DEFAULT, Planner, find_method
 from fullpose.rig import Rig
 from fullpose.solution import Blocking, Solution, limited_name
 from fullpose.verify import attitude_errors, payload_attitudes
@@ -65,10 +65,9 @@ def solve_flight(
     t, C = check_flight(time, attitude)
     near = check_start(start, rig)
     own = row.chosen(options)
-    if row.plans is not None:
+    if isinstance(row, Planner):
         made = row.plans(t, C, rig, near, own, progress, clock)
         return Solved(made.solution, made)
-    assert row.begins is not None
     begin = clock() if clock else np.nan
     flown = _stepped(row.begins(rig, own, near, t, C), t, C, clock, progress)
     solve_time = clock() - begin if clock else np.nan

@@ -78,7 +78,7 @@ def live_step(rig: Rig, settings: LiveSettings, dt: float) -> LiveStep:
     """The step for one rig and settings, its kernels compiled. Raises `LiveError` where they do not go together."""
     from fullpose.registry import REGISTRY, Sees  # heavier than the rest of the rig process: only where it is used
 
-    known = [row.name for row in REGISTRY.values() if row.sees is Sees.AHEAD or row.step is not None]
+    known = [row.name for row in REGISTRY.values() if row.sees is not Sees.FLIGHT]
     if settings.method not in known:
         raise LiveError(f"method {settings.method!r}: expected one of {', '.join(known)}")
     if REGISTRY[settings.method].sees is not Sees.AHEAD:
