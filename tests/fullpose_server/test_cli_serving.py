@@ -15,6 +15,7 @@ import httpx
 from websockets.sync.client import connect
 
 from tests.support.repository import PYTHONPATH
+from tests.support.waiting import until
 
 
 @contextmanager
@@ -120,7 +121,4 @@ def test_a_server_that_is_killed_leaves_its_rig_to_the_next_one(tmp_path: Path) 
     assert (after["state"], after["health"]["rig_pid"]) == ("idle", before["health"]["rig_pid"])
     assert after["lease"]["epoch"] == before["lease"]["epoch"]
     left = Path(f"/proc/{before['health']['rig_pid']}")
-    deadline = time.monotonic() + 30.0
-    while left.exists() and time.monotonic() < deadline:  # ended, it waits for init to take its status
-        time.sleep(0.05)
-    assert not left.exists()
+    until(lambda: not left.exists())  # ended, it waits for init to take its status

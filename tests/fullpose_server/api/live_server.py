@@ -4,7 +4,6 @@ import asyncio
 import json
 import socket
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +16,7 @@ from websockets.sync.client import ClientConnection, connect
 from fullpose_server.app import create_app
 from fullpose_server.cli._serving import bind
 from fullpose_server.settings import Settings
+from tests.support.waiting import until
 
 FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(
     f"{k / 50},{40 * (k / 100) ** 2},{10 * (k / 100) ** 2},{-5 * (k / 100) ** 2}\n" for k in range(101)
@@ -93,28 +93,26 @@ class Operator:
     def to_idle(self) -> None:
         """Bring the session to idle from wherever an earlier test left it."""
         self.take()
-        for _ in range(100):
-            state = self.session()["state"]
-            match state:
-                case "idle":
-                    return
-                case "disconnected":
-                    answer = self.command("connect")
-                case "ready":
-                    answer = self.command("unload")
-                case "armed":
-                    answer = self.command("disarm")
-                case "estopped" | "faulted":
-                    self.command("acknowledge")
-                    answer = self.command("reset")
-                case _:
-                    self.server.http.post(f"/rigs/{self.rig}/stop")
-                    self.wait("armed", "faulted", "estopped")
-                    continue
-            if not answer.is_success:
-                time.sleep(0.1)  # not at rest yet
-                self.wait("idle", "ready", "disconnected", "armed", "estopped", "faulted")
-        raise AssertionError(f"no way to idle from {self.session()['state']}")
+        until(self._nearer_idle, every_s=0.1)
+
+    def _nearer_idle(self) -> bool:
+        """One step towards idle; True there. What is refused, for the rig is not at rest yet, is asked again."""
+        match self.session()["state"]:
+            case "idle":
+                return True
+            case "disconnected":
+                self.command("connect")
+            case "ready":
+                self.command("unload")
+            case "armed":
+                self.command("disarm")
+            case "estopped" | "faulted":
+                self.command("acknowledge")
+                self.command("reset")
+            case _:
+                self.server.http.post(f"/rigs/{self.rig}/stop")
+                self.wait("armed", "faulted", "estopped")
+        return self.session()["state"] == "idle"
 
 
 @contextmanager

@@ -2,13 +2,13 @@
 
 import json
 import shutil
-import time
 from pathlib import Path
 from typing import Any
 
 from fullpose_server.api.schemas.compare import ComparisonReportOut
 from fullpose_server.planning.comparisons import Comparisons
 from tests.fullpose_server.api.live_server import LiveServer
+from tests.support.waiting import until
 
 
 def ask(server: LiveServer, **changes: Any) -> dict[str, Any]:
@@ -22,10 +22,11 @@ def ask(server: LiveServer, **changes: Any) -> dict[str, Any]:
 
 
 def finished(server: LiveServer, job: dict[str, Any]) -> dict[str, Any]:
-    while job["status"] in ("queued", "running"):
-        time.sleep(0.05)
-        job = server.http.get(f"/compare/{job['id']}").json()
-    return job
+    def ended() -> dict[str, Any] | None:
+        now: dict[str, Any] = server.http.get(f"/compare/{job['id']}").json()
+        return None if now["status"] in ("queued", "running") else now
+
+    return until(ended)
 
 
 def test_a_comparison_is_a_job_with_a_report_and_a_page(server: LiveServer) -> None:

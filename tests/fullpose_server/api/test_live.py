@@ -4,6 +4,7 @@ import json
 import math
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from fullpose_server.api.streams.live_link import split
 from fullpose_server.runtime.live.packets import REPLY_SIZE, Kind, LiveStatus, decode_reply, encode_sample
 from tests.fullpose_server.api.live_server import LiveServer, Operator, live_server
 from tests.fullpose_server.api.test_stream import received
+from tests.support.waiting import until
 
 RIG = "vertical-4"
 
@@ -65,11 +67,9 @@ def fly(
         if t - renewed > 1.0:
             renewed = t
             operator.server.http.post(f"/rigs/{RIG}/lease", json={"action": "renew"})
-        try:
-            while True:
-                replies.append(stream.recv(timeout=0.0))
-        except TimeoutError:
-            time.sleep(0.005)
+        with suppress(TimeoutError):  # what comes is read until the next is due
+            while (left := begun + count * 0.005 - time.monotonic()) > 0.0:
+                replies.append(stream.recv(timeout=left))
     while len(replies) < count:
         replies.append(stream.recv(timeout=5.0))
     return replies
@@ -188,15 +188,15 @@ def test_one_source_a_rig_and_none_from_foreign_pages(server: LiveServer, operat
         with pytest.raises(InvalidStatus) as refused, source(server):
             pass
         assert refused.value.response.status_code == 409
-    for _ in range(100):
+
+    def taken() -> bool:
         try:
             with source(server) as stream:
-                assert opened(stream)["type"] == "opened"
-                break
+                return bool(opened(stream)["type"] == "opened")
         except InvalidStatus:
-            time.sleep(0.05)
-    else:
-        raise AssertionError("the place of the source that has gone is not free")
+            return False
+
+    until(taken)  # once the place of the source that has gone is free
     for rig, origin, status in ((RIG, "http://evil.example", 403), ("nowhere", server.url, 404)):
         with pytest.raises(InvalidStatus) as refused, source(server, rig, origin=origin):
             pass

@@ -1,6 +1,5 @@
 """A rig that is operated as its file says: on a table behind the udp drive, by a third party's drive, left alone."""
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.session.machine import SilencePolicy
 from tests.fullpose_server.api.live_server import FLIGHT, LiveServer, Operator, live_server
 from tests.fullpose_server.drives.test_udp import emulator
+from tests.support.waiting import until
 
 # A starved machine is late, and its table lags: what is tested here is not how much.
 PATIENT = """
@@ -144,13 +144,14 @@ def test_a_silent_server_means_hold_stop_and_disarm_when_the_file_says(tmp_path:
     assert decode(place.config.read_bytes()).server == SilencePolicy(1.0, 1.5, 2.0)
     memory = Shared(place.memory())
     seen = set()
-    deadline = time.monotonic() + 50.0  # without the file's times it is armed for 60 s
-    while "ready" not in seen:
+
+    def disarmed() -> bool:
         data = memory.snapshot()
         assert data is not None
         seen.add(decode_published(data).state)
-        assert time.monotonic() < deadline, seen
-        time.sleep(0.02)
+        return "ready" in seen
+
+    until(disarmed, patience_s=50.0)  # without the file's times it is armed for 60 s
     with live_server(tmp_path, rig_rate_hz=500.0) as server:
         session = Operator(server, rig).session()
         assert session["state"] == "ready"

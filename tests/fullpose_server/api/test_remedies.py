@@ -1,7 +1,6 @@
 """Remedies as jobs: asked of a plan, cancelled, made, and flown where the rig allows it."""
 
 import math
-import time
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 from fullpose.attitude import dcm_from_quaternion, euler_from_dcm
 from fullpose_server.formats.plan_folder import read_plan
 from tests.fullpose_server.api.live_server import LiveServer, Operator
+from tests.support.waiting import until
 
 # From rest to rest, 1250 deg/s of roll between, where the inner frame has 600.
 S = np.linspace(0.0, 1.0, 121)
@@ -34,12 +34,11 @@ def asked(server: LiveServer, plan: str, **body: Any) -> dict[str, Any]:
 
 
 def ended(server: LiveServer, plan: str) -> dict[str, Any]:
-    for _ in range(2400):
+    def at_its_end() -> dict[str, Any] | None:
         made: dict[str, Any] = server.http.get(f"/plans/{plan}").json()
-        if made["status"] not in ("queued", "running"):
-            return made
-        time.sleep(0.05)
-    raise AssertionError(f"{made['progress']}")
+        return None if made["status"] in ("queued", "running") else made
+
+    return until(at_its_end)
 
 
 def test_slowed_down_it_is_a_plan_that_loads(
@@ -99,18 +98,17 @@ def test_where_no_limit_alone_is_enough_the_job_fails_with_the_reason(
     assert "outer acceleration" in made["error"]["message"]
 
 
-def test_a_search_is_cancelled_at_once(server: LiveServer, infeasible: dict[str, Any]) -> None:
+def test_a_search_is_cancelled_before_its_end(server: LiveServer, infeasible: dict[str, Any]) -> None:
     job = asked(server, infeasible["id"], kind="mounting_offset")["id"]
-    for _ in range(600):
-        progress = server.http.get(f"/plans/{job}").json()["progress"]
-        if progress["phase"] == "solve" and progress["done"] >= 1:
-            break
-        time.sleep(0.02)
+
+    def searching() -> dict[str, Any] | None:
+        progress: dict[str, Any] = server.http.get(f"/plans/{job}").json()["progress"]
+        return progress if progress["phase"] == "solve" and progress["done"] >= 1 else None
+
+    progress = until(searching)
     assert 0.0 < progress["fraction"] < 1.0
-    begun = time.monotonic()
     assert server.http.delete(f"/plans/{job}").status_code == 204
-    assert ended(server, job)["status"] == "cancelled"
-    assert time.monotonic() - begun < 5.0
+    assert ended(server, job)["status"] == "cancelled"  # one that went on to its end would be done
 
 
 def test_a_flight_that_fits_needs_no_limit_raised(server: LiveServer) -> None:

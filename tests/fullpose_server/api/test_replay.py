@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import time
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +21,7 @@ from fullpose_server.session.states import STATES
 from tests.fullpose_server.api.live_server import LiveServer
 from tests.fullpose_server.api.test_stream import received, subscribe
 from tests.fullpose_server.scene.browser_side import Viewer
+from tests.support.waiting import until
 
 
 def replay(server: LiveServer, run: str, **options: Any) -> ClientConnection:
@@ -146,11 +146,7 @@ def test_its_scene_shows_the_run_and_goes_with_the_client(server: LiveServer, ru
                 )
             )
         assert httpx.get(f"{server.url}{scene}").status_code == 200
-    for _ in range(100):
-        if httpx.get(f"{server.url}{scene}").status_code == 404:
-            break
-        time.sleep(0.05)
-    assert httpx.get(f"{server.url}{scene}").status_code == 404
+    until(lambda: httpx.get(f"{server.url}{scene}").status_code == 404)
 
 
 def test_the_clock_of_a_replay(server: LiveServer, run: str) -> None:
@@ -192,12 +188,13 @@ def test_so_many_records_are_played_at_once_and_no_more(server: LiveServer, run:
         with pytest.raises(InvalidStatus) as refused:
             replay(server, run).close()
         assert refused.value.response.status_code == 503
-    for _ in range(100):  # the last one's end may take the server a moment
+
+    def admitted() -> bool:
         try:
             with replay(server, run) as stream:
                 received(stream, "hello")
-            break
         except InvalidStatus:
-            time.sleep(0.05)
-    else:
-        raise AssertionError("no room though nobody replays")
+            return False
+        return True
+
+    until(admitted)  # the last one's end may take the server a moment

@@ -17,6 +17,7 @@ from fullpose_server.runtime.recording.mcap_writer import RunRecord
 from fullpose_server.runtime.recording.run_index import RunFiles
 from tests.fullpose_server.api.live_server import LiveServer, Operator
 from tests.fullpose_server.api.test_stream import received
+from tests.support.waiting import until
 
 
 def test_a_run_tells_what_was_flown_and_how_well(server: LiveServer, run: str) -> None:
@@ -43,10 +44,7 @@ def test_csv_parquet_and_mcap_are_the_same_samples(server: LiveServer, run: str,
     assert list(lines[0]) == table.column_names
     np.testing.assert_array_equal([float(line["demand_base_deg"]) for line in lines], rows["demand"][:, 0])
     assert {line["state"] for line in lines} >= {"positioning", "running"}
-    deadline = time.monotonic() + 10.0  # it goes once the last byte is sent
-    while left := list((server.settings.data_dir / "exports").iterdir()):
-        assert time.monotonic() < deadline, left
-        time.sleep(0.01)
+    until(lambda: not list((server.settings.data_dir / "exports").iterdir()))  # it goes once the last byte is sent
 
 
 def test_what_is_no_run(server: LiveServer, run: str) -> None:
@@ -111,12 +109,12 @@ def test_an_incident_is_listed_as_one_and_can_be_played(server: LiveServer, run:
     operator.to_idle()
     server.http.post("/rigs/vertical-4/estop")
     operator.wait("estopped")
-    for _ in range(600):
+
+    def others() -> list[dict[str, object]]:
         lines = [line for line in server.http.get("/runs").json() if line["id"] != run]
-        if lines and lines[0]["complete"]:
-            break
-        time.sleep(0.05)
-    (line,) = lines
+        return lines if lines and lines[0]["complete"] else []
+
+    (line,) = until(others)
     operator.to_idle()
     assert "-vertical-4-incident-" in line["id"]
     assert (line["incident"], line["rig"], line["who"]) == ("estop", "vertical-4", "ann")

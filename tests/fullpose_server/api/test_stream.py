@@ -84,7 +84,10 @@ def test_a_client_that_comes_back_is_sent_what_it_missed(operator: Operator, ser
     with server.stream() as stream:
         subscribe(stream, topics=["telemetry"])
         last = received(stream, "telemetry")["seq"]
-    time.sleep(0.2)
+    with server.stream() as other:
+        subscribe(other, topics=["telemetry"])
+        while received(other, "telemetry")["seq"] < last + 50:
+            pass
     with server.stream() as stream:
         subscribe(stream, topics=["telemetry"], since_seq=last)
         frame = received(stream, "telemetry")
