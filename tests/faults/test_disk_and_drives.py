@@ -16,7 +16,8 @@ import pytest
 from fullpose_server.drives.packet import Order
 from fullpose_server.formats.plan_folder import PlanFolder, PlanInfo, plan_hash
 from fullpose_server.runtime.contract.config import GuardConfig, RigConfig, Tolerance
-from fullpose_server.runtime.recording.mcap_reader import is_whole, read_events, read_samples, repair
+from fullpose_server.runtime.recording.export import repair
+from fullpose_server.runtime.recording.mcap_reader import is_whole, read_events, read_samples
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import STATES
 from tests.fullpose_server.drives.relay import Relay, relay

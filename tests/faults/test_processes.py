@@ -33,7 +33,7 @@ QUICK = SilencePolicy(0.8, 8.0, 60.0)
 SERVER = """
 import asyncio, sys
 from pathlib import Path
-from fullpose_server.runtime import config
+from fullpose_server.runtime.contract import config
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from tests.fullpose_server.runtime.rigs import Operator
 

@@ -22,7 +22,7 @@ def export(
 ) -> None:
     """Write every sample of the record."""
     from fullpose_server.formats.output_file import check_apart, check_writable, replacing
-    from fullpose_server.runtime.recording.run_index import write_export
+    from fullpose_server.runtime.recording.export import write_export
 
     record = _record(run, data_dir)
     target = out or Path(f"{record.stem}.csv")

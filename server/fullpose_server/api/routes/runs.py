@@ -11,8 +11,9 @@ from starlette.responses import FileResponse
 
 from fullpose_server.api.deps import ServicesDep
 from fullpose_server.api.schemas.records import RunOut
+from fullpose_server.runtime.recording.export import write_export
 from fullpose_server.runtime.recording.mcap_reader import is_whole
-from fullpose_server.runtime.recording.run_index import RunSummary, write_export
+from fullpose_server.runtime.recording.run_index import RunSummary
 
 router = APIRouter(prefix="/runs", tags=["runs"])
 Format = Literal["csv", "parquet", "mcap"]

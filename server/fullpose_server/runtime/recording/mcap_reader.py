@@ -19,9 +19,10 @@ from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap.records import Channel, Chunk, Message, Metadata
 from mcap.stream_reader import breakup_chunk, get_chunk_data_stream
-from mcap.writer import MCAP0_MAGIC, Writer
+from mcap.writer import MCAP0_MAGIC
 
 from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
+from fullpose_server.runtime.recording.channels import EVENTS, TELEMETRY
 from fullpose_server.session.states import STATES
 
 _CODES = {str(state): code for code, state in enumerate(STATES)}
@@ -39,14 +40,18 @@ class RecordError(Exception):
         self.why = why
 
 
-class _Content(ReadDataStream):
-    """Of a record. The library takes what there is where less is left than a length in it says."""
+class _Exact(BytesIO):
+    """Of a record's content. The library takes what there is where less is left than a length in it says."""
 
-    def read(self, length: int) -> bytes:
-        data = super().read(length)
-        if len(data) < length:
+    def read(self, size: int | None = -1, /) -> bytes:
+        data = super().read(size)
+        if size is not None and len(data) < size:
             raise EndOfFile
         return data
+
+
+def _stream(content: bytes) -> ReadDataStream:
+    return ReadDataStream(_Exact(content))
 
 
 def recover_messages(path: Path) -> Iterator[tuple[str, Message]]:
@@ -76,7 +81,7 @@ def run_of(path: Path) -> dict[str, str]:
         for opcode, content in _contents(path, file):
             if opcode == Opcode.METADATA:
                 try:
-                    found = Metadata.read(_Content(BytesIO(content)))
+                    found = Metadata.read(_stream(content))
                 except Exception as cause:  # see `_decoded`
                     raise RecordError(path, f"its run's description is damaged ({cause!r})") from cause
                 if found.name == "run":
@@ -122,7 +127,7 @@ def _contents(path: Path, file: BinaryIO) -> Iterator[tuple[int, bytes]]:
 def _decoded(content: bytes, how: Callable[[Chunk, bool], _T]) -> _T | None:
     """What `how` finds in a chunk, its checksum compared; None where the chunk is damaged."""
     try:
-        return how(Chunk.read(_Content(BytesIO(content))), True)
+        return how(Chunk.read(_stream(content)), True)
     except Exception:  # noqa: BLE001 - damaged bytes may be anything, and each decoder has errors of its own for them
         return None
 
@@ -133,9 +138,9 @@ def read_record(path: Path) -> tuple[Samples, list[dict[str, Any]]]:
 
     def telemetry() -> Iterator[dict[str, Any]]:
         for topic, message in recover_messages(path):
-            if topic == "/telemetry":
+            if topic == TELEMETRY:
                 yield _DECODE(message.data)
-            elif topic == "/events":
+            elif topic == EVENTS:
                 events.append(_DECODE(message.data))
 
     return _rows(path, telemetry(), None), events
@@ -146,7 +151,7 @@ def read_samples(path: Path, since_seq: int = 0, limit: int | None = None) -> Sa
 
     Raises `RecordError`.
     """
-    messages = (_DECODE(message.data) for topic, message in recover_messages(path) if topic == "/telemetry")
+    messages = (_DECODE(message.data) for topic, message in recover_messages(path) if topic == TELEMETRY)
     return _rows(path, (raw for raw in messages if raw["seq"] > since_seq), limit)
 
 
@@ -169,34 +174,7 @@ def _rows(path: Path, messages: Iterator[dict[str, Any]], limit: int | None) -> 
 
 def read_events(path: Path) -> list[dict[str, Any]]:
     """The events of a record: commands, transitions, alarms. Raises `RecordError`."""
-    return [_DECODE(message.data) for topic, message in recover_messages(path) if topic == "/events"]
-
-
-def repair(path: Path, to: Path) -> int:
-    """Write a whole file `to` from what can be read of `path`; returns the messages kept. Raises `RecordError`."""
-    kept = 0
-    schemas: dict[str, int] = {}
-    run = run_of(path)
-    with to.open("wb") as file:
-        writer = Writer(file)
-        writer.start(profile="", library="fullpose recovery")
-        writer.add_metadata("run", run)
-        for topic, message in recover_messages(path):
-            if topic not in schemas:
-                schemas[topic] = writer.register_channel(topic, "json", _schema(path, writer, topic))
-            writer.add_message(schemas[topic], message.log_time, message.data, message.publish_time, message.sequence)
-            kept += 1
-        writer.finish()  # type: ignore[no-untyped-call]
-    return kept
-
-
-def _schema(path: Path, writer: Writer, topic: str) -> int:
-    from fullpose_server.runtime.recording.mcap_writer import EVENT_SCHEMA, STATISTICS_SCHEMA, sample_schema
-
-    schema = {"/telemetry": sample_schema(), "/events": EVENT_SCHEMA, "/statistics": STATISTICS_SCHEMA}.get(topic)
-    if schema is None:
-        raise RecordError(path, f"topic {topic} is not a rig's")
-    return int(writer.register_schema(str(schema["title"]), "jsonschema", msgspec.json.encode(schema)))
+    return [_DECODE(message.data) for topic, message in recover_messages(path) if topic == EVENTS]
 
 
 def _row(raw: dict[str, Any]) -> tuple[Any, ...]:

@@ -12,50 +12,10 @@ import msgspec
 from mcap.writer import Writer
 
 from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
+from fullpose_server.runtime.recording import channels
 from fullpose_server.session.states import STATES
 
 WAITING_BYTES = 8_000_000
-# One plain type a field, and no null: Foxglove and Lichtblick refuse a channel whose schema has more than they know.
-# What is not a number, or has no value, is left out of its message.
-_NUMBER, _INTEGER, _STRING, _TRUTH = ({"type": kind} for kind in ("number", "integer", "string", "boolean"))
-_INTEGERS = ("seq", "time_ns", "wall_ns", "flags", "revision", "tick")
-
-
-def sample_schema() -> dict[str, Any]:
-    """JSON schema of a telemetry message: `SAMPLE`'s fields, the state by name."""
-    properties: dict[str, Any] = {}
-    for name in SAMPLE.names or ():
-        kind = _INTEGER if name in _INTEGERS else _NUMBER
-        properties[name] = {"type": "array", "items": _NUMBER} if SAMPLE[name].shape else kind
-    properties["state"] = _STRING | {"enum": list(STATES)}
-    return {"title": "fullpose.Sample", "type": "object", "properties": properties}
-
-
-# Of the events of every kind: commands, transitions, alarms, runs.
-EVENT_SCHEMA = {
-    "title": "fullpose.Event",
-    "type": "object",
-    "properties": {
-        **dict.fromkeys(
-            ("kind", "who", "command", "before", "after", "refused", "trigger", "run_id", "rig", "state"), _STRING
-        ),
-        **dict.fromkeys(("code", "severity", "message", "frame", "unit"), _STRING),
-        **dict.fromkeys(("time_ns", "wall_ns", "epoch", "head", "number", "count", "pid"), _INTEGER),
-        **dict.fromkeys(("value", "limit", "time_s"), _NUMBER),
-        "first": _TRUTH,
-    },
-}
-STATISTICS_SCHEMA = {
-    "title": "fullpose.LoopStatistics",
-    "type": "object",
-    "properties": {
-        "ticks": _INTEGER,
-        "deadline_misses": _INTEGER,
-        "busy_us": _NUMBER,
-        "lateness_us": {"type": "object", "properties": dict.fromkeys(("p50", "p99", "p999", "max"), _NUMBER)},
-        "free_bytes": _INTEGER,
-    },
-}
 
 
 class PatientFile:
@@ -98,13 +58,6 @@ class PatientFile:
         os.close(self._fd)
 
 
-class _Chunks(Writer):
-    """The library's writer, with chunks cut when we say so (it cuts by size alone)."""
-
-    def cut(self) -> None:
-        self._Writer__finalize_chunk()  # type: ignore[attr-defined]  # the library's name for it
-
-
 class RunRecord:
     """One run's file. `begun_ns` is the monotonic time that `wall_ns` was taken at: log times never step back."""
 
@@ -112,18 +65,15 @@ class RunRecord:
         self.path = path
         self._shift = wall_ns - begun_ns
         self.file = PatientFile(path)
-        self._writer = _Chunks(self.file, chunk_size=1 << 30)  # type: ignore[arg-type]  # it needs write, tell, flush
+        # Chunks are cut by time, in `cut`: never by size.
+        self._writer = Writer(self.file, chunk_size=1 << 30)  # type: ignore[arg-type]  # it needs write, tell, flush
         self._writer.start(profile="", library="fullpose")
-        self._samples = self._channel("/telemetry", "fullpose.Sample", sample_schema())
-        self._events = self._channel("/events", "fullpose.Event", EVENT_SCHEMA)
-        self._statistics = self._channel("/statistics", "fullpose.LoopStatistics", STATISTICS_SCHEMA)
+        self._samples = channels.register(self._writer, channels.TELEMETRY)
+        self._events = channels.register(self._writer, channels.EVENTS)
+        self._statistics = channels.register(self._writer, channels.STATISTICS)
         self._writer.add_metadata("run", {key: _text(value) for key, value in run.items()})
         self.chunks = 0
         self.samples = 0
-
-    def _channel(self, topic: str, title: str, schema: dict[str, Any]) -> int:
-        number = self._writer.register_schema(title, "jsonschema", msgspec.json.encode(schema))
-        return self._writer.register_channel(topic, "json", number)
 
     def add_samples(self, rows: Samples) -> None:
         """Add telemetry rows (n,)."""
@@ -151,7 +101,7 @@ class RunRecord:
     def cut(self) -> None:
         """End the chunk and write it. Raises OSError where the disk refuses (it waits), BufferError where it waits
         for too long."""
-        self._writer.cut()
+        self._writer.flush()  # type: ignore[no-untyped-call]
         self.chunks += 1
         try:
             self.file.push()

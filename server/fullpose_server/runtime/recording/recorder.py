@@ -66,8 +66,8 @@ class Recorder:
             self._next = self._shared.ring.head
             self._header["recorder_seq"] = self._next  # nothing is owed
         else:
-            self._take()
-            self._write(now)
+            self._take(self._record)
+            self._write(self._record, now)
 
     def end(self) -> None:
         """Complete the record with all there is."""
@@ -78,7 +78,7 @@ class Recorder:
         if self._record is not None:
             # It is owed its last samples; one whose end was not told (an incident) ends here.
             self._until = int(event["head"]) if self._until is None else self._until
-            self._take()
+            self._take(self._record)
             self._finish()
         self._until = self._alarm_ns = None
         name = str(event["run_id"])
@@ -103,8 +103,7 @@ class Recorder:
             return  # it is in a run's record already
         self._alarm_ns = int(event["time_ns"])
 
-    def _take(self) -> None:
-        assert self._record is not None
+    def _take(self, record: RunRecord) -> None:
         while True:
             wanted = _BATCH if self._until is None else min(_BATCH, self._until - self._next)
             rows, lost = self._shared.ring.since(self._next, wanted)
@@ -113,14 +112,13 @@ class Recorder:
                 self._next += lost
             if not len(rows):
                 break
-            self._record.add_samples(rows)
+            record.add_samples(rows)
             self._next = int(rows["seq"][-1])
             if self._alarm_ns is not None and self._until is None:
                 self._until = _rest(rows, self._alarm_ns)
         self._header["recorder_seq"] = self._next
 
-    def _write(self, now: float) -> None:
-        assert self._record is not None
+    def _write(self, record: RunRecord, now: float) -> None:
         if now - self._statistics_at >= _STATISTICS_S:
             self._statistics_at = now
             header = self._header
@@ -131,22 +129,22 @@ class Recorder:
                 "lateness_us": self._shared.lateness_us(),
                 "free_bytes": int(header["recorder_free_bytes"][0]),
             }
-            self._record.add_statistics(time.monotonic_ns(), statistics)
+            record.add_statistics(time.monotonic_ns(), statistics)
         ended = self._until is not None and self._next >= self._until
         if ended or now - self._cut_at >= CHUNK_S:
             self._cut_at = now
             try:
-                self._record.cut()
+                record.cut()
                 self._header["recorder_error"] = b""
             except OSError as cause:
                 self._complain(f"the record waits: {cause.strerror}")
             except BufferError as cause:
                 self._complain(f"the record ends early, readable as far as it is: {cause}")
-                self._record.file.close()
+                record.file.close()
                 self._record = None
                 return
-            self._header["recorder_bytes"] = self._record.file.length
-            self._header["recorder_chunks"] = self._record.chunks
+            self._header["recorder_bytes"] = record.file.length
+            self._header["recorder_chunks"] = record.chunks
         if ended:
             self._finish()
 

@@ -1,8 +1,7 @@
-"""Recorded runs as the outside sees them: a summary of each file, kept beside it, and tables for export."""
+"""Recorded runs as the outside sees them: a summary of each file, kept beside it."""
 
 import contextlib
 import json
-import shutil
 import time
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
@@ -11,33 +10,18 @@ from typing import Any
 from uuid import uuid4
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv as pacsv
-import pyarrow.parquet as pq
 
-from fullpose.rig import FRAMES
 from fullpose_server.errors import FileError, NotFoundError
-from fullpose_server.runtime.contract.telemetry import LEAD, SAMPLE, Samples
+from fullpose_server.runtime.contract.telemetry import LEAD, Samples
 from fullpose_server.runtime.recording.mcap_reader import (
     RecordError,
     is_whole,
     read_record,
-    read_samples,
-    repair,
     run_of,
 )
-from fullpose_server.session.states import STATES, State
+from fullpose_server.session.states import State
 
-_UNITS = {
-    "demand": "deg",
-    "demand_rate": "deg_s",
-    "demand_acceleration": "deg_s2",
-    "measured": "deg",
-    "measured_rate": "deg_s",
-    "following_error_deg": "deg",
-}
 _WRITTEN_S = 5.0  # a record that has not grown for so long is no longer written: its recorder was cut off
-_QUATERNION = ("w", "x", "y", "z")
 
 
 @dataclass(frozen=True)
@@ -211,50 +195,6 @@ def _stamp(run: str) -> float | None:
         return datetime.strptime(run.split("-", 1)[0], "%Y%m%dT%H%M%S").replace(tzinfo=UTC).timestamp()
     except ValueError:
         return None
-
-
-def table(rows: Samples) -> pa.Table:
-    """One column a number, named with its frame and unit; what is not a number is null."""
-    columns: dict[str, Any] = {}
-    start = rows["time_ns"][0] if rows.size else 0
-    columns["time_s"] = (rows["time_ns"] - start) / 1e9
-    for name in SAMPLE.names or ():
-        values = rows[name]
-        if name == "state":
-            columns[name] = [STATES[code].value for code in values.tolist()]
-        elif name == "target":
-            columns |= {f"target_q{axis}": values[:, k] for k, axis in enumerate(_QUATERNION)}
-        elif name in _UNITS:
-            stem = name.removesuffix("_deg")
-            columns |= {f"{stem}_{frame}_{_UNITS[name]}": values[:, k] for k, frame in enumerate(FRAMES)}
-        else:
-            columns[name] = values
-    return pa.table({name: pa.array(_plain(values), from_pandas=True) for name, values in columns.items()})
-
-
-def write_export(record: Path, target: Path, kind: str) -> None:
-    """Write a record as `csv`, `parquet` or `mcap`. Raises `FileError`.
-
-    As MCAP a record that is cut off, damaged or still being written is repaired: what can be read of it, with an index.
-    """
-    try:
-        if kind == "mcap":
-            if is_whole(record):
-                shutil.copyfile(record, target)
-            else:
-                repair(record, target)
-            return
-        made = table(read_samples(record))
-    except RecordError as error:
-        raise FileError(record.name, f"a record ({error.why})") from None
-    if kind == "parquet":
-        pq.write_table(made, target)
-    else:
-        pacsv.write_csv(made, target)
-
-
-def _plain(values: Any) -> Any:
-    return np.ascontiguousarray(values) if isinstance(values, np.ndarray) else values
 
 
 def _largest(values: np.ndarray[Any, Any]) -> float | None:

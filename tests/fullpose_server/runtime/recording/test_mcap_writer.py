@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
+from fullpose_server.runtime.recording.export import repair
 from fullpose_server.runtime.recording.mcap_reader import (
     RecordError,
     is_whole,
     read_events,
     read_samples,
-    repair,
     run_of,
 )
 from fullpose_server.runtime.recording.mcap_writer import RunRecord
