@@ -15,8 +15,9 @@ from websockets.sync.client import connect
 from fullpose.registry import method_names
 from fullpose_server.api.console import console
 from fullpose_server.api.origin import OriginGuard
-from fullpose_server.app import DataDirInUseError, create_app
+from fullpose_server.app import create_app
 from fullpose_server.settings import Settings, is_loopback
+from fullpose_server.wiring import DataDirInUseError
 from tests.fullpose_server.api.live_server import LiveServer
 
 

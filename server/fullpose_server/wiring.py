@@ -1,0 +1,177 @@
+"""The composition root: from a server's settings to its services, which live as long as it does."""
+
+import asyncio
+import fcntl
+import os
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fullpose_server.api.deps import Services
+from fullpose_server.errors import ServerError
+from fullpose_server.formats.plan_folder import rig_hash
+from fullpose_server.formats.rig_file import RigStore
+from fullpose_server.operating import GuardConfig, OperatingConfig, Tolerance
+from fullpose_server.planning.comparisons import Comparisons
+from fullpose_server.planning.plan_queue import PlanQueue
+from fullpose_server.planning.plan_request import PlanRequest
+from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
+from fullpose_server.runtime.recording.run_index import RunFiles
+from fullpose_server.runtime.supervisor.registry import RigHosts
+from fullpose_server.scene.on_demand import ScenesOnDemand
+from fullpose_server.scene.scenes import SceneServer
+from fullpose_server.settings import Settings
+from fullpose_server.store.audit import AuditLog
+from fullpose_server.store.database import Database
+from fullpose_server.store.plans import PlanStore
+from fullpose_server.store.trajectories import TrajectoryStore
+
+
+class DataDirInUseError(ServerError):
+    """Another server works on this data folder."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(
+            f"data folder {folder} is in use by another Fullpose server: stop it, or give another --data-dir"
+        )
+
+
+@dataclass(frozen=True)
+class Served:
+    """What a server is made of: the services of its routes, and the scenes that are started when looked at."""
+
+    services: Services
+    scenes: ScenesOnDemand
+
+
+@asynccontextmanager
+async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Served]:
+    """The services, started, and ended in the opposite order. Raises `DataDirInUseError`."""
+    async with AsyncExitStack() as stack:
+        folder = settings.data_dir.resolve()
+        stack.callback(os.close, await asyncio.to_thread(_lock, folder))
+        database = await asyncio.to_thread(Database, folder / "fullpose.db")
+        stack.callback(database.close)
+        served = _build(settings, folder, database, scenes)
+        services = served.services
+        stack.callback(scenes.close)
+        await services.queue.start()
+        stack.push_async_callback(services.queue.close)
+        stack.push_async_callback(services.comparisons.close)
+        stack.push_async_callback(services.hosts.close, stop_rigs=settings.stop_rigs_on_exit)
+        await services.hosts.adopt()
+        yield served
+
+
+def _build(settings: Settings, folder: Path, database: Database, scenes: SceneServer) -> Served:
+    rigs = RigStore(folder / "rigs", _operating(settings))
+    trajectories = TrajectoryStore(database, folder / "trajectories")
+    plans = PlanStore(database, folder / "plans")
+    run_folder = folder / "runs"
+    run_folder.mkdir(exist_ok=True)
+    process_of = _RigProcess(settings, rigs, run_folder)
+    hosts = RigHosts(rigs, process_of.config, process_of.directory)
+
+    def latest(rig: str) -> Any:
+        host = hosts.get(rig)
+        rows = None if host is None else host.latest()
+        return None if rows is None else rows[0]
+
+    on_demand = ScenesOnDemand(scenes, rigs, latest)
+    services = Services(
+        settings=settings,
+        database=database,
+        rigs=rigs,
+        trajectories=trajectories,
+        plans=plans,
+        queue=PlanQueue(plans, _PlanRequests(rigs, trajectories, plans).request),
+        comparisons=Comparisons(folder / "comparisons"),
+        audit=AuditLog(database),
+        hosts=hosts,
+        runs=RunFiles(run_folder),
+        scenes=on_demand,
+    )
+    return Served(services, on_demand)
+
+
+def _operating(settings: Settings) -> OperatingConfig:
+    """How a rig is operated whose file does not say."""
+    bridged_ms = settings.live_extrapolate_ms
+    # It warns before the source is let go, and trips where it is not.
+    return OperatingConfig(guard=GuardConfig(stale_ms=Tolerance(0.4 * bridged_ms, 2.0 * bridged_ms)))
+
+
+@dataclass(frozen=True)
+class _RigProcess:
+    """What the process of a rig is told, by the rig's name."""
+
+    settings: Settings
+    rigs: RigStore
+    runs: Path
+
+    def directory(self, rig: str) -> Path:
+        """Where the process has its own files."""
+        return self.rigs.folder / rig
+
+    def config(self, rig: str) -> RigConfig:
+        """How it runs."""
+        entry, settings = self.rigs.get(rig), self.settings
+        return RigConfig(
+            rig,
+            entry.rig,
+            self.directory(rig),
+            self.runs,
+            rate_hz=settings.rig_rate_hz,
+            live=LiveConfig(
+                udp_port=settings.live_udp_ports.get(rig),
+                delay_ms=settings.live_delay_ms,
+                extrapolate_ms=settings.live_extrapolate_ms,
+            ),
+            **vars(entry.operating),
+        )
+
+
+@dataclass(frozen=True)
+class _PlanRequests:
+    """What the planning process is told, by the plan's id."""
+
+    rigs: RigStore
+    trajectories: TrajectoryStore
+    plans: PlanStore
+
+    def request(self, plan: str) -> PlanRequest:
+        """Raises `ServerError` where the rig is not the one any more that the plan was asked for."""
+        row = self.plans.get(plan)
+        rig = self.rigs.get(row.rig).rig
+        if rig_hash(rig) != row.rig_hash:
+            raise ServerError(f"rig {row.rig} has been changed since this plan was asked for: ask again")
+        start = None if row.start_deg is None else np.deg2rad(row.start_deg)
+        return PlanRequest(
+            plan_id=plan,
+            folder=self.plans.folder(plan),
+            trajectory=self.trajectories.folder(row.trajectory),
+            trajectory_sha256=row.trajectory,
+            name=self.trajectories.get(row.trajectory).name,
+            rig=rig,
+            rate_hz=row.rate_hz,
+            method=row.method,
+            options=row.options,
+            start=None if start is None else (float(start[0]), float(start[1]), float(start[2]), float(start[3])),
+            remedy=row.remedy,
+        )
+
+
+def _lock(folder: Path) -> int:
+    """Lock the data folder for the life of the returned file descriptor."""
+    folder.mkdir(parents=True, exist_ok=True)
+    descriptor = os.open(folder / "server.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        raise DataDirInUseError(folder) from None
+    return descriptor
