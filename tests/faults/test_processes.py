@@ -18,7 +18,7 @@ import pytest
 from mcap.stream_reader import StreamReader
 
 from fullpose_server.runtime.contract.config import encode
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.recording.mcap_reader import read_events
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.machine import SilencePolicy
@@ -244,7 +244,7 @@ async def _adopt(config: object, pid: int) -> None:
         assert np.nanmax(rows["solve_error_deg"]) <= 1e-9
     finally:
         await host.close(stop_rig=True)
-    assert Place(host.config.directory).running() is None
+    assert RigPaths(host.config.directory).running() is None
 
 
 def test_a_server_that_stays_away_means_a_stop_and_in_the_end_the_process_leaves(tmp_path: Path) -> None:
@@ -270,7 +270,7 @@ def test_a_server_that_stays_away_means_a_stop_and_in_the_end_the_process_leaves
         process.stdout.close()
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, signal.SIGKILL)
-    assert not Place(config.directory).memory().exists()
+    assert not RigPaths(config.directory).memory().exists()
     numbers = messages(next(iter((tmp_path / "runs").iterdir())))
     assert (np.diff(numbers) == 1).all()
 

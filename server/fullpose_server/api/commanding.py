@@ -14,7 +14,9 @@ from fullpose_server.session.states import Command
 _STATUS = {"lease_needed": 403, "lease_lost": 403, "rig_unreachable": 503}
 
 
-def lane(services: Services, rig: str, word: Literal["stop", "estop"], who: str) -> Coroutine[Any, Any, CommandOut]:
+def by_priority(
+    services: Services, rig: str, word: Literal["stop", "estop"], who: str
+) -> Coroutine[Any, Any, CommandOut]:
     """Stop or E-stop, now: the flag is set in here. The coroutine, which is to be awaited, answers and audits.
 
     Raises `ApiError` where no rig process runs.
@@ -29,7 +31,7 @@ def lane(services: Services, rig: str, word: Literal["stop", "estop"], who: str)
             command=word,
             allowed=["connect"],
         )
-    done = host.lane(Command(word), who)
+    done = host.by_priority(Command(word), who)
 
     async def answered() -> CommandOut:
         reply = await done

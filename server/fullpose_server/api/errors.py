@@ -77,7 +77,7 @@ def validation_problem(errors: Sequence[Any]) -> Problem:
         FieldProblem(
             where=".".join(str(part) for part in item["loc"]),
             message=item["msg"],
-            value=None if item["type"] == "missing" else _short(item.get("input")),
+            value=None if item["type"] == "missing" else _abridged(item.get("input")),
         )
         for item in errors[:20]
     ]
@@ -114,6 +114,6 @@ def _file_problem(error: FileError) -> FieldProblem:
     )
 
 
-def _short(value: object) -> str | None:
+def _abridged(value: object) -> str | None:
     text = repr(value)
     return text if len(text) <= 120 else text[:117] + "..."

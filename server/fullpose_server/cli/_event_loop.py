@@ -17,11 +17,11 @@ from fullpose_server.app import create_app
 from fullpose_server.cli._exit import CommandError, fail
 from fullpose_server.errors import ServerError
 from fullpose_server.runtime.supervisor.process_manager import HostError
-from fullpose_server.scene.scenes import warm
+from fullpose_server.scene.scenes import prewarm
 from fullpose_server.settings import Settings
 
 Ready = Callable[[str], Awaitable[None]]
-WARM_AFTER_S = 0.5
+PREWARM_AFTER_S = 0.5
 # How long a thread that computes (reading an upload) may keep the interpreter from the event loop, at every single
 # send. Python's own 5 ms are half of what an E-stop may take.
 SWITCH_S = 0.0001
@@ -51,8 +51,8 @@ def before_others() -> None:
         os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
 
 
-def _warm() -> None:
-    warm()
+def _prewarm() -> None:
+    prewarm()
     # What has been loaded stays: without this each full collection looks at all of it again, and nothing else runs for
     # the 120 ms that takes.
     gc.freeze()
@@ -75,8 +75,8 @@ async def _run(settings: Settings, listener: socket.socket, url: str, ready: Rea
         sys.stdout.write(f"{url}\n")
         sys.stdout.flush()
         # What the first look at a scene needs is loaded when the server has begun to answer, and nobody waits for it.
-        warming = threading.Thread(target=_warm, name="scene-warm", daemon=True)
-        later = asyncio.get_running_loop().call_later(WARM_AFTER_S, warming.start)
+        warming = threading.Thread(target=_prewarm, name="scene-prewarm", daemon=True)
+        later = asyncio.get_running_loop().call_later(PREWARM_AFTER_S, warming.start)
         beside = asyncio.create_task(_beside(ready, url, server))
         await serving
         later.cancel()

@@ -3,7 +3,7 @@
 from fullpose_server.drives.base import Status
 
 
-class Obedience:
+class DriveResponseMonitor:
     """Compares, once a tick, what is asked of a drive with what it shows; counts ticks, not time.
 
     A process that was stopped itself has not given the drive its time, so the clock would be no witness.

@@ -19,7 +19,7 @@ from fullpose_server.scene import palette
 from fullpose_server.scene.shapes import arc, drum, joined, slab, tower
 
 EX, EY, EZ = np.eye(3)
-Place = tuple[float, float, float]
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Stage:
     frame: str  # of FRAMES
     axis: int  # X, Y or Z
     parts: tuple[Part, ...]
-    label_at: Place  # in the frame's axes [m]
+    label_at: Point  # in the frame's axes [m]
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def _shafts(axis: int, inside: float, outside: float, gap: float) -> trimesh.Tri
     return joined(*(drum(0.2 * gap, s * e * inside, s * e * outside, sections=32) for s in (-1.0, 1.0)))
 
 
-def _ring(name: str, axis: int, inner: int, radius: float, gap: float) -> tuple[tuple[Part, ...], Place]:
+def _ring(name: str, axis: int, inner: int, radius: float, gap: float) -> tuple[tuple[Part, ...], Point]:
     colour = palette.FRAME_COLOURS[name]
     body = joined(arc(radius, 0.62 * gap, 0.4 * gap, EX, EY))
     parts = (
@@ -118,7 +118,7 @@ def _ring(name: str, axis: int, inner: int, radius: float, gap: float) -> tuple[
     return parts, (0.0, at, at)
 
 
-def _yoke(name: str, axis: int, radius: float, gap: float) -> tuple[tuple[Part, ...], Place]:
+def _yoke(name: str, axis: int, radius: float, gap: float) -> tuple[tuple[Part, ...], Point]:
     e = np.eye(3)[axis]
     body = joined(
         arc(radius, 0.7 * gap, 0.4 * gap, np.cross(e, -EX), e, math.pi),
@@ -137,7 +137,7 @@ def _yoke(name: str, axis: int, radius: float, gap: float) -> tuple[tuple[Part, 
     return parts, (-at, at * float(e[1]), at * float(e[2]))
 
 
-def _fork(name: str, radius: float, gap: float) -> tuple[tuple[Part, ...], Place]:
+def _fork(name: str, radius: float, gap: float) -> tuple[tuple[Part, ...], Point]:
     table = -(radius + 0.95 * gap)
     body = joined(
         arc(radius, 1.0 * gap, 0.5 * gap, EX, EZ, math.pi),
@@ -155,7 +155,7 @@ def _fork(name: str, radius: float, gap: float) -> tuple[tuple[Part, ...], Place
     return parts, (0.0, -at, at)
 
 
-def _roll(name: str, back: float, yoke: float, clear: float, gap: float) -> tuple[tuple[Part, ...], Place]:
+def _roll(name: str, back: float, yoke: float, clear: float, gap: float) -> tuple[tuple[Part, ...], Point]:
     plate = 0.62 * clear
     front = back
     body = joined(

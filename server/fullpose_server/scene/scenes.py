@@ -4,7 +4,7 @@ viser's handles are not made for several writers, so everything that reaches a b
 times a second it takes each rig's newest sample and brings the scene to it. Nothing here is in the rig's loop.
 
 viser and trimesh take as long to load as the rest of the server: they are loaded when a scene is first wanted, or ahead
-of it by `warm`.
+of it by `prewarm`.
 """
 
 import logging
@@ -40,7 +40,7 @@ class _Running:
     failing: bool = False
 
 
-def warm() -> None:
+def prewarm() -> None:
     """Load what draws, so that the first scene starts at once. Seconds; for a thread of its own."""
     import fullpose_server.scene.rig_scene  # noqa: F401
 

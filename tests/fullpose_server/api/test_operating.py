@@ -11,7 +11,7 @@ from fullpose_server.formats.rig_toml import rig_toml
 from fullpose_server.operating import GuardConfig, OperatingConfig, Tolerance
 from fullpose_server.runtime.contract.config import decode
 from fullpose_server.runtime.contract.messages import decode_published
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.session.machine import SilencePolicy
 from tests.fullpose_server.api.live_server import FLIGHT, LiveServer, Operator, live_server
@@ -139,10 +139,10 @@ def test_a_silent_server_means_hold_stop_and_disarm_when_the_file_says(tmp_path:
     rig = rig_file(tmp_path, PATIENT + silence + "[process]\nmin_free_mb = 1.0\n")
     with live_server(tmp_path, rig_rate_hz=500.0, stop_rigs_on_exit=False) as server:
         started(server, rig, LONG)
-    place = Place(tmp_path / "rigs" / rig)
-    assert place.running() is not None
-    assert decode(place.config.read_bytes()).server == SilencePolicy(1.0, 1.5, 2.0)
-    memory = Shared(place.memory())
+    paths = RigPaths(tmp_path / "rigs" / rig)
+    assert paths.running() is not None
+    assert decode(paths.config.read_bytes()).server == SilencePolicy(1.0, 1.5, 2.0)
+    memory = Shared(paths.memory())
     seen = set()
 
     def disarmed() -> bool:

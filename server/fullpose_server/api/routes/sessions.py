@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Body
 
-from fullpose_server.api.commanding import answer, audit, lane, refusal
+from fullpose_server.api.commanding import answer, audit, by_priority, refusal
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.session import (
@@ -53,7 +53,7 @@ async def get_alarms(rig: str, services: ServicesDep) -> list[AlarmOut]:
 async def command(rig: str, body: Annotated[CommandIn, Body()], services: ServicesDep, who: WhoDep) -> CommandOut:
     """Command the session. Needs the lease, but for stop and estop."""
     if body.command in ("stop", "estop"):
-        return await _lane(services, rig, body.command, who)
+        return await _by_priority(services, rig, body.command, who)
     host = services.hosts.get(rig)
     if host is None:
         raise await _refused_without_process(services, rig, body, who)
@@ -72,13 +72,13 @@ async def command(rig: str, body: Annotated[CommandIn, Body()], services: Servic
 @router.post("/stop", responses=REFUSED)
 async def stop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
     """Brake every frame inside its limits. Needs no lease and waits for no other command."""
-    return await _lane(services, rig, "stop", who)
+    return await _by_priority(services, rig, "stop", who)
 
 
 @router.post("/estop", responses=REFUSED)
 async def estop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
     """Brake as fast as the limits allow, then disable the drive. Needs no lease and waits for no other command."""
-    return await _lane(services, rig, "estop", who)
+    return await _by_priority(services, rig, "estop", who)
 
 
 @router.post("/lease", responses=REFUSED)
@@ -94,10 +94,10 @@ async def release_lease(rig: str, services: ServicesDep, who: WhoDep) -> LeaseOu
     return await _lease(services, await _host(services, rig), "release", who, None)
 
 
-async def _lane(services: Services, rig: str, word: Literal["stop", "estop"], who: str) -> CommandOut:
+async def _by_priority(services: Services, rig: str, word: Literal["stop", "estop"], who: str) -> CommandOut:
     if services.hosts.get(rig) is None:  # otherwise nothing is waited for before the flag is set
         await _known(services, rig)
-    return await lane(services, rig, word, who)
+    return await by_priority(services, rig, word, who)
 
 
 async def _lease(services: Services, host: RigHost, action: str, who: str, to: str | None) -> LeaseOut:

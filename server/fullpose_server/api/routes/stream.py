@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from fastapi import APIRouter, WebSocket
 
-from fullpose_server.api.commanding import lane
+from fullpose_server.api.commanding import by_priority
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.base import Wire
@@ -54,7 +54,7 @@ class _Rig:
         host = await self._services.hosts.wait(self._rig)
         frames = self._frames(host)
         while True:
-            await frames.turns.turn()
+            await frames.round_robin.turn()
             revision = host.revision
             yield frames.session(revision, self._changed)
             # Health is no change of the session, and no one should have to ask for it.
@@ -65,7 +65,7 @@ class _Rig:
         raise ApiError(422, "not-a-replay", f"{message.type}: a rig as it lives can only be watched")
 
     def stop(self, message: StopNow) -> Awaitable[Wire]:
-        done = lane(self._services, self._rig, message.type, message.client or self._who)
+        done = by_priority(self._services, self._rig, message.type, message.client or self._who)
 
         async def answered() -> Wire:
             return Stopped.model_validate((await done).model_dump())

@@ -40,7 +40,7 @@ class FrameSource:
     ) -> None:
         self.latest = source.latest
         self.samples = source.samples
-        self.turns = Turns()
+        self.round_robin = RoundRobin()
         self._fresh_s = fresh_s
         self._clock = clock
         self._until = -1.0
@@ -82,7 +82,7 @@ def encoded(rows: Samples, encoding: Encoding) -> bytes:
     return _encode(columns)[1:]
 
 
-class Turns:
+class RoundRobin:
     """Lets `AT_ONCE` waiting clients go on in one round of the event loop, in the order they came."""
 
     def __init__(self) -> None:

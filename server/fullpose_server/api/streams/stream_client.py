@@ -136,7 +136,7 @@ class StreamClient:
         period = 1.0 / wanted.rate_hz
         due = loop.time()
         while True:
-            await source.turns.turn()
+            await source.round_robin.turn()
             for frame in frames.take():
                 if isinstance(frame, bytes):
                     await self._socket.send_bytes(frame)

@@ -13,7 +13,7 @@ from pathlib import Path
 from fullpose_server.runtime.contract.shared_memory import shared_directory
 
 
-class Place:
+class RigPaths:
     """The files of one rig in `directory`."""
 
     def __init__(self, directory: Path) -> None:
@@ -61,12 +61,12 @@ class Place:
         draft.write_text(json.dumps({"pid": pid}), "utf-8")
         draft.replace(self.notes)
 
-    def socket_address(self, name: str) -> "ShortPath":
+    def socket_address(self, name: str) -> "SocketAddress":
         """The address of the Unix socket `name` here."""
-        return ShortPath(self.directory, name)
+        return SocketAddress(self.directory, name)
 
 
-class ShortPath:
+class SocketAddress:
     """A Unix socket's path through a descriptor of its folder: socket paths may not exceed 107 bytes, folders do.
 
     Use as a context manager: the address is valid inside.

@@ -17,7 +17,7 @@ from fullpose._typing import Array
 from fullpose.rig import Rig
 from fullpose_server.runtime.contract.config import LiveConfig
 from fullpose_server.runtime.contract.messages import LiveHealth
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.live.buffer import LiveBuffer
 from fullpose_server.runtime.live.packets import (
     SAMPLE_SIZE,
@@ -39,7 +39,7 @@ _DEG = 180.0 / math.pi
 class LiveSource:
     """One rig's live source. `poll` every tick; `tick` while the session is live."""
 
-    def __init__(self, rig: Rig, config: LiveConfig, place: Place, dt: float) -> None:
+    def __init__(self, rig: Rig, config: LiveConfig, paths: RigPaths, dt: float) -> None:
         self._rig = rig
         self._config = config
         self._dt = dt
@@ -61,14 +61,14 @@ class LiveSource:
         self.last_age_ms = 0.0
         self.rate_hz = 0.0
         self._rated = (0.0, 0)  # when, and samples by then
-        self._open(place)
+        self._open(paths)
 
-    def _open(self, place: Place) -> None:
+    def _open(self, paths: RigPaths) -> None:
         local = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
-        with place.socket_address("live.sock") as address:
-            (place.directory / "live.sock").unlink(missing_ok=True)
+        with paths.socket_address("live.sock") as address:
+            (paths.directory / "live.sock").unlink(missing_ok=True)
             local.bind(address)
-        os.chmod(place.directory / "live.sock", 0o600)  # noqa: PTH101
+        os.chmod(paths.directory / "live.sock", 0o600)  # noqa: PTH101
         self._sockets.append(local)
         if self._config.udp_port is not None:
             udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)

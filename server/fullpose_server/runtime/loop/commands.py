@@ -1,4 +1,4 @@
-"""The rig process's desk: takes requests, checks them, has the session decide, and answers."""
+"""The rig process's command handler: takes requests, checks them, has the session decide, and answers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _MOVES = (Command.START, Command.MOVE, Command.HOME, Command.JOG)
 
 
-class Desk:
+class CommandHandler:
     """Answers for one loop."""
 
     def __init__(self, loop: RigLoop) -> None:
@@ -49,7 +49,7 @@ class Desk:
             word = request.command or request.action or request.op
             error = messages.ErrorBody(refusal.code, str(refusal), loop.machine.state, word, allowed)
         if request.op == "command" or request.action != "renew":
-            loop.note(
+            loop.log_event(
                 "command",
                 who=request.who,
                 command=request.command or f"lease {request.action}",
@@ -59,13 +59,13 @@ class Desk:
                 after=loop.machine.state,
                 refused=None if error is None else error.code,
             )
-        loop.panel.publish()
+        loop.publisher.publish()
         state = loop.machine.state
         reply = messages.Reply(error is None, before, state, loop.machine.revision, error)
         return messages.Answer(request.id, reply, lease)
 
-    def lane(self, command: Command, who: str, now: float) -> None:
-        """E-stop or stop from the flag lane: no lease, no reply. Where the state has no use for it, nothing happens."""
+    def by_priority(self, command: Command, who: str, now: float) -> None:
+        """E-stop or stop from the priority channel: no lease, no reply; nothing where the state has no use for it."""
         loop = self._loop
         before = loop.machine.state
         refused = None
@@ -77,12 +77,12 @@ class Desk:
             if command is Command.ESTOP:
                 loop.estop_alarm(who)
             loop.do(actions)
-        loop.note("command", who=who, command=command, before=before, after=loop.machine.state, refused=refused)
+        loop.log_event("command", who=who, command=command, before=before, after=loop.machine.state, refused=refused)
 
     def _exit(self, who: str, now: float) -> None:
         machine = self._loop.machine
         if machine.moving:
-            self.lane(Command.ESTOP, who, now)
+            self.by_priority(Command.ESTOP, who, now)
             raise OrderError("not_at_rest", "the rig was moving: E-stop given; ask again when it is at rest")
         self._loop.ending = True
 
@@ -167,7 +167,7 @@ class Desk:
         except DriveError as cause:
             raise OrderError("drive_refused", str(cause)) from cause
         self._decide(Command.ARM, request, now, pair)
-        loop.stand(loop.measured)
+        loop.hold_position(loop.measured)
         loop.enabled = True
 
     def _acknowledge(self, request: messages.Request, now: float) -> None:

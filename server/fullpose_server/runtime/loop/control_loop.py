@@ -19,14 +19,14 @@ from fullpose.rig import FRAMES
 from fullpose_server.drives.base import Drive
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.runtime.contract.config import RigConfig
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.loop.clock import Deadlines
-from fullpose_server.runtime.loop.commands import Desk
+from fullpose_server.runtime.loop.commands import CommandHandler
 from fullpose_server.runtime.loop.control_server import ControlServer
-from fullpose_server.runtime.loop.monitors import Judge
-from fullpose_server.runtime.loop.publisher import Panel
+from fullpose_server.runtime.loop.monitors import Monitors
+from fullpose_server.runtime.loop.publisher import Publisher
 from fullpose_server.runtime.motion.generator import Mode, Motion
 from fullpose_server.runtime.motion.limit_guard import Finding, Guard
 from fullpose_server.session.alarms import Severity
@@ -48,7 +48,7 @@ class RigLoop:
         config: RigConfig,
         drive: Drive,
         shared: Shared,
-        place: Place,
+        paths: RigPaths,
         realtime: str,
         start_recorder: Callable[[], "subprocess.Popen[bytes]"],
         recorder: "subprocess.Popen[bytes]",
@@ -82,11 +82,11 @@ class RigLoop:
         self._collected = 0.0
         self._idle_since = time.monotonic()
         self._header = shared.header
-        self.desk = Desk(self)
-        self.panel = Panel(self)
-        self.judge = Judge(self)
-        self.live = LiveSource(config.rig, config.live, place, self.dt)
-        self._control = ControlServer(place, self.desk.answer)
+        self.command_handler = CommandHandler(self)
+        self.publisher = Publisher(self)
+        self.monitors = Monitors(self)
+        self.live = LiveSource(config.rig, config.live, paths, self.dt)
+        self._control = ControlServer(paths, self.command_handler.answer)
         self._header["period_ns"] = self.deadlines.period_ns
         if config.after_loss is not None:
             self.alarm("rig_process_lost", Severity.FAULT, config.after_loss)
@@ -95,7 +95,7 @@ class RigLoop:
 
     def run(self) -> None:
         """Tick until told to end, or nobody needs this process any more."""
-        self.panel.publish()
+        self.publisher.publish()
         try:
             while not self.ending:
                 now_ns, lateness_ns, missed = self.deadlines.wait()
@@ -112,7 +112,7 @@ class RigLoop:
         """A fault of ours: nothing is commanded any more, so the drive brakes by itself, and the last words say why."""
         self.drive.brake()
         self.alarm("internal_error", Severity.FAULT, f"{type(cause).__name__}: {cause}")
-        self.panel.publish()
+        self.publisher.publish()
 
     def terminate(self) -> None:
         """On SIGTERM: E-stop where the rig moves; end when it is at rest."""
@@ -129,16 +129,16 @@ class RigLoop:
             self._end_when_at_rest(now)
         self.status = self.drive.read(now, self.measured, self.measured_rate) if self.machine.linked else 0
         if self.machine.linked:
-            self.judge.drive()
-        error = self.judge.measured(now)
-        self.judge.lateness(now, lateness_ns, missed)
+            self.monitors.drive()
+        error = self.monitors.measured(now)
+        self.monitors.lateness(now, lateness_ns, missed)
         self.live.poll(now)
         if self.ticks % 16 == 0:
-            self.judge.silences(now)
-            self.judge.recorder(now)
+            self.monitors.silences(now)
+            self.monitors.recorder(now)
         self._move(now)
         self._answer_lanes()
-        solved_deg = self.panel.record(now_ns, lateness_ns, missed, error)
+        solved_deg = self.publisher.record(now_ns, lateness_ns, missed, error)
         self.live.reply(self.motion.x, solved_deg, self.guard.margin, time.monotonic())
         self.ticks += 1
         self._after(now, now_ns, lateness_ns)
@@ -150,10 +150,10 @@ class RigLoop:
         before = self.machine.state
         self.do(self.machine.event(event))
         if self.machine.state is not before:
-            self.note("transition", before=before, after=self.machine.state, trigger=str(event))
+            self.log_event("transition", before=before, after=self.machine.state, trigger=str(event))
 
     def do(self, actions: tuple[Action, ...]) -> None:
-        """Do what the session ordered. Orders that need arguments are prepared by the desk."""
+        """Do what the session ordered. Orders that need arguments are prepared by the command handler."""
         for action in actions:
             match action:
                 case Action.RUN:
@@ -176,19 +176,19 @@ class RigLoop:
                 case Action.UNBIND:
                     self.motion.unload()
                     self.live.unload()
-                    self.judge.forget()
+                    self.monitors.forget()
                 case Action.CLEAR:
-                    self.judge.forget()
+                    self.monitors.forget()
                     self._disable_at_rest = False
         if Action.BRAKE_FASTEST in actions and not self.machine.moving:
             self._rest()
         if self.machine.state is not State.LIVE:
             self.live.end()
         if self.run_id is not None and self.machine.state not in IN_MOTION and not self.machine.moving:
-            self.note("run_end", run_id=self.run_id, head=self.shared.ring.head, state=self.machine.state)
+            self.log_event("run_end", run_id=self.run_id, head=self.shared.ring.head, state=self.machine.state)
             self.run_id = None
 
-    def stand(self, measured: Array) -> None:
+    def hold_position(self, measured: Array) -> None:
         """Stand where the table is found, (4,) [rad]; a frame that lies outside its range by noise, on its limit."""
         pose = np.clip(measured, self.rig.position_min, self.rig.position_max)
         outside = np.abs(measured - pose)
@@ -196,7 +196,7 @@ class RigLoop:
         for i in np.flatnonzero(outside > _NOISE):
             name, found, limit = FRAMES[i], math.degrees(measured[i]), math.degrees(pose[i])
             text = f"{name} frame found at {found:.6g} deg, beyond its limit of {limit:.6g} deg: it may only come back"
-            self.judge.warn(Finding("outside_range", False, text, name, found, limit, "deg"))
+            self.monitors.warn(Finding("outside_range", False, text, name, found, limit, "deg"))
 
     def begin_run(self, who: str) -> None:
         """A flight begins: the recorder opens a file."""
@@ -207,7 +207,7 @@ class RigLoop:
         run_id = f"{stamp}-{name}-{time.time_ns() // 1000 % 1000000:06d}"
         bound = self.machine.binding
         plan = {} if bound is None else asdict(bound)
-        self.note(kind, run_id=run_id, rig=self.config.name, head=self.shared.ring.head, plan=plan, **content)
+        self.log_event(kind, run_id=run_id, rig=self.config.name, head=self.shared.ring.head, plan=plan, **content)
         return run_id
 
     def estop_alarm(self, who: str) -> None:
@@ -242,25 +242,25 @@ class RigLoop:
         if not self.machine.moving:
             self.ending = True
         elif self.machine.state is not State.ESTOPPED:
-            self.desk.lane(Command.ESTOP, "SIGTERM", now)
+            self.command_handler.by_priority(Command.ESTOP, "SIGTERM", now)
 
     def _lanes(self, now: float) -> None:
         header = self._header
-        for lane, command in (("estop", Command.ESTOP), ("stop", Command.STOP)):
-            asked = int(header[f"{lane}_request_ns"][0])
-            if asked == int(header[f"{lane}_done_ns"][0]):
+        for channel, command in (("estop", Command.ESTOP), ("stop", Command.STOP)):
+            asked = int(header[f"{channel}_request_ns"][0])
+            if asked == int(header[f"{channel}_done_ns"][0]):
                 continue
-            who = bytes(header[f"{lane}_who"][0]).decode("utf-8", "replace")
-            self.desk.lane(command, who, now)
-            self._obeyed.append((lane, asked))
-            self._estop_unwritten = lane == "estop" or self._estop_unwritten
+            who = bytes(header[f"{channel}_who"][0]).decode("utf-8", "replace")
+            self.command_handler.by_priority(command, who, now)
+            self._obeyed.append((channel, asked))
+            self._estop_unwritten = channel == "estop" or self._estop_unwritten
 
     def _answer_lanes(self) -> None:
         """Only after the first braking command is written; and who reads "done" must find the state it led to."""
         if self._obeyed:
-            self.panel.publish()
-            for lane, asked in self._obeyed:
-                self._header[f"{lane}_done_ns"] = asked
+            self.publisher.publish()
+            for channel, asked in self._obeyed:
+                self._header[f"{channel}_done_ns"] = asked
             self._obeyed.clear()
 
     # --- moving ---
@@ -278,17 +278,17 @@ class RigLoop:
             return
         event = motion.tick()
         if motion.mode is Mode.LIVE:
-            self.judge.live()
+            self.monitors.live()
         if event is Event.SOURCE_LOST:
             text = f"no sample of the live source for {self.live.last_age_ms:.0f} ms"
-            self.judge.warn(Finding("live_source_lost", False, text, None, self.live.last_age_ms, math.nan, "ms"))
+            self.monitors.warn(Finding("live_source_lost", False, text, None, self.live.last_age_ms, math.nan, "ms"))
             self.report(event)
             event = motion.tick()
         found = self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)
         if found is not None:
             event = None
             motion.brake(fastest=True)
-            self.judge.trip(found)
+            self.monitors.trip(found)
             if motion.tick() is Event.AT_REST:
                 event = Event.AT_REST
             if self.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a) is not None:
@@ -315,16 +315,16 @@ class RigLoop:
                 # No run is recorded: the recorder keeps what led here (from the first tick on), and on until rest.
                 who = self.machine.lease(time.monotonic()).holder or ""
                 self._open_record("incident", f"{self.config.name}-incident", who=who, code=code)
-            self.note("alarm", **asdict(raised))
+            self.log_event("alarm", **asdict(raised))
 
-    def note(self, kind: str, **content: Any) -> None:
+    def log_event(self, kind: str, **content: Any) -> None:
         """Add an event for the recorder and the server's audit log."""
         self.shared.add_event({"kind": kind, "time_ns": time.monotonic_ns(), "wall_ns": time.time_ns(), **content})
 
     def _after(self, now: float, now_ns: int, lateness_ns: int) -> None:
         header = self._header
-        self.panel.count(lateness_ns)
-        self.panel.refresh(now)
+        self.publisher.count(lateness_ns)
+        self.publisher.refresh(now)
         resting = not self.machine.moving and self.machine.state is not State.ARMED
         if resting and now - self._collected > _COLLECT_S:
             self._at_leisure()
@@ -333,7 +333,7 @@ class RigLoop:
         if not resting or now - int(header["server_beat_ns"][0]) / 1e9 < 1.0:
             self._idle_since = now
         elif now - self._idle_since > self.config.exit_idle_s:
-            self.note("exit", why=f"at rest, and no server for {self.config.exit_idle_s:g} s")
+            self.log_event("exit", why=f"at rest, and no server for {self.config.exit_idle_s:g} s")
             self.ending = True
         busy = time.monotonic_ns() - now_ns
         header["busy_ns"] = (int(header["busy_ns"][0]) * 63 + busy) // 64
@@ -343,4 +343,4 @@ class RigLoop:
         gc.collect()
         if self._recorder.poll() is not None:
             self._recorder = self._start_recorder()
-            self.note("recorder_restarted", pid=self._recorder.pid)
+            self.log_event("recorder_restarted", pid=self._recorder.pid)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import msgspec
 
 from fullpose_server.runtime.contract import messages
-from fullpose_server.runtime.contract.rig_paths import Place, control_socket
+from fullpose_server.runtime.contract.rig_paths import RigPaths, control_socket
 
 _PER_TICK = 4
 _CLIENTS = 8
@@ -20,11 +20,11 @@ _CLIENTS = 8
 class ControlServer:
     """Listens in a rig's directory. `poll` answers what has come."""
 
-    def __init__(self, place: Place, handle: Callable[[messages.Request], messages.Answer]) -> None:
+    def __init__(self, paths: RigPaths, handle: Callable[[messages.Request], messages.Answer]) -> None:
         self._handle = handle
         self._listener = control_socket()
-        with place.socket_address("control.sock") as address:
-            (place.directory / "control.sock").unlink(missing_ok=True)
+        with paths.socket_address("control.sock") as address:
+            (paths.directory / "control.sock").unlink(missing_ok=True)
             self._listener.bind(address)
         self._listener.listen(_CLIENTS)
         self._clients: dict[int, socket.socket] = {}

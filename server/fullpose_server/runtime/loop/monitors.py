@@ -11,7 +11,7 @@ import numpy as np
 
 from fullpose.rig import FRAMES
 from fullpose_server.drives.base import Status
-from fullpose_server.drives.response_monitor import Obedience
+from fullpose_server.drives.response_monitor import DriveResponseMonitor
 from fullpose_server.runtime.contract.config import Tolerance
 from fullpose_server.runtime.motion.generator import Mode
 from fullpose_server.runtime.motion.limit_guard import Finding
@@ -27,7 +27,7 @@ _ORDER_S = 0.2  # for an order to reach the drive: the first move after arming i
 _WAY_LATE_S = 0.5  # ten times as long as between two ways
 
 
-class Judge:
+class Monitors:
     """Judges for one loop. Each method looks at one thing, once a tick or less."""
 
     def __init__(self, loop: RigLoop) -> None:
@@ -35,12 +35,12 @@ class Judge:
         self._warned: set[tuple[str, str | None]] = set()
         self._misses: list[float] = []
         self._server_silence = Silence(loop.config.server)
-        self._obedience = Obedience(round(_ORDER_S * loop.config.rate_hz))
+        self._drive_response = DriveResponseMonitor(round(_ORDER_S * loop.config.rate_hz))
 
     def forget(self) -> None:
         """Warn anew of what was warned of before: after a reset or unload."""
         self._warned.clear()
-        self._obedience.forget()
+        self._drive_response.forget()
 
     def drive(self) -> None:
         """The drive's own status, and whether it does what it was told."""
@@ -48,7 +48,7 @@ class Judge:
         status = loop.status
         now = time.monotonic()
         asked = loop.enabled and not loop.drive_brakes
-        disobeys = self._obedience.ends(asked, loop.machine.moving, status)
+        disobeys = self._drive_response.ends(asked, loop.machine.moving, status)
         if status & Status.LINK_LOST:
             loop.enabled = loop.drive_brakes = False
             loop.alarm("link_lost", Severity.FAULT, f"drive {loop.drive.name}: link lost; the drive brakes by itself")

@@ -33,7 +33,7 @@ def _path(config: RigConfig) -> None:
     angles = np.tile(rig.home, (n, 1))
     target = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
     plan = make_plan(
-        plan_id="warm",
+        plan_id="prewarm",
         rig=rig,
         rate_hz=config.rate_hz,
         angles=angles,

@@ -15,7 +15,7 @@ from pathlib import Path
 from fullpose_server.drives import registry
 from fullpose_server.drives.base import Drive, DriveError
 from fullpose_server.runtime.contract import config
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.loop import clock, prewarm
 from fullpose_server.runtime.loop.control_loop import RigLoop
@@ -32,8 +32,8 @@ def main() -> int:
     logging.basicConfig(format="%(asctime)s %(message)s", level=logging.INFO)
     log = logging.getLogger("fullpose.rig")
     settings = config.decode(given.config.read_bytes())
-    place = Place(settings.directory)
-    lock = _lock(place)
+    paths = RigPaths(settings.directory)
+    lock = _lock(paths)
     if lock is None:
         log.error("another process runs %s", settings.name)
         return 1
@@ -42,7 +42,7 @@ def main() -> int:
     except DriveError as cause:
         log.error("%s", cause)
         return 2
-    memory = place.memory()
+    memory = paths.memory()
     memory.unlink(missing_ok=True)  # of a process that was killed: we hold the lock
     shared = Shared(memory, create=True)
     shared.header["rig_pid"] = os.getpid()
@@ -61,15 +61,15 @@ def main() -> int:
             log.error("process.cpu = %s: %s; expected one of this machine's", settings.cpu, cause.strerror)
             return 2
         loop = RigLoop(
-            settings, drive, shared, place, realtime, lambda: start_recorder(memory, settings.runs), recorder
+            settings, drive, shared, paths, realtime, lambda: start_recorder(memory, settings.runs), recorder
         )
         signal.signal(signal.SIGTERM, lambda *_: loop.terminate())
         clock.still_collector()
-        place.write_notes(os.getpid())
+        paths.write_notes(os.getpid())
         log.info("%s ready, pid %d, real time %s", settings.name, os.getpid(), realtime)
         loop.run()
     finally:
-        place.notes.unlink(missing_ok=True)
+        paths.notes.unlink(missing_ok=True)
         memory.unlink(missing_ok=True)
         os.close(lock)
     return 0
@@ -98,9 +98,9 @@ def _wait_for(recorder: "subprocess.Popen[bytes]", shared: Shared) -> None:
         time.sleep(0.01)
 
 
-def _lock(place: Place) -> int | None:
+def _lock(paths: RigPaths) -> int | None:
     for _ in range(_LOCK_TRIES):
-        fd = place.take_lock()
+        fd = paths.take_lock()
         if fd is not None:
             return fd
         time.sleep(0.02)  # a server that looks whether we live holds it for a moment

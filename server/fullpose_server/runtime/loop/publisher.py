@@ -20,7 +20,7 @@ _DEG = 180.0 / math.pi
 _REFRESH_S = 0.25  # at least this often, so that the lease's age is fresh
 
 
-class Panel:
+class Publisher:
     """Shows one loop."""
 
     def __init__(self, loop: RigLoop) -> None:
@@ -49,7 +49,7 @@ class Panel:
         machine, bound = loop.machine, loop.machine.binding
         ref = None
         if bound is not None:
-            info = None if loop.desk.plan is None else loop.desk.plan.info
+            info = None if loop.command_handler.plan is None else loop.command_handler.plan.info
             name, duration = ("", None) if info is None else (info.name, info.duration_s)
             ref = messages.PlanRef(bound.plan_id, bound.plan_hash, bound.rig_hash, bound.live, name, duration)
         lease = machine.lease(now_ns / 1e9)

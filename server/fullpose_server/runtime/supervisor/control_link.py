@@ -6,7 +6,7 @@ from typing import Any
 
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.messages import MAX_REQUEST
-from fullpose_server.runtime.contract.rig_paths import Place, control_socket
+from fullpose_server.runtime.contract.rig_paths import RigPaths, control_socket
 from fullpose_server.session.lease import LeaseToken
 
 
@@ -29,14 +29,14 @@ class ControlLink:
         self._reader: asyncio.Task[None] | None = None
         self.open_for_requests = False
 
-    async def open(self, place: Place) -> None:
+    async def open(self, paths: RigPaths) -> None:
         """Connect. Raises `RigUnreachableError` where nobody listens."""
         try:
-            with place.socket_address("control.sock") as address:
+            with paths.socket_address("control.sock") as address:
                 await asyncio.get_running_loop().sock_connect(self._socket, address)
         except OSError as cause:
             self._socket.close()
-            raise RigUnreachableError(f"no rig process listens in {place.directory} ({cause})") from cause
+            raise RigUnreachableError(f"no rig process listens in {paths.directory} ({cause})") from cause
         self.open_for_requests = True
         self._reader = asyncio.create_task(self._read(), name="rig control reader")
 

@@ -16,7 +16,7 @@ import fullpose
 import fullpose_server
 from fullpose_server.runtime.contract import config as configs
 from fullpose_server.runtime.contract.config import RigConfig
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 
 START_S = 60.0  # with no kernel in the cache, compiling takes most of it
 # The process runs the very packages that run here, wherever they were found.
@@ -28,17 +28,17 @@ class HostError(Exception):
 
 
 class Launcher:
-    """Starts the processes of one place, one after another."""
+    """Starts the processes of one rig, one after another."""
 
-    def __init__(self, place: Place) -> None:
-        self._place = place
+    def __init__(self, paths: RigPaths) -> None:
+        self._paths = paths
         self._child = 0
         self._ended: int | None = None
 
     async def spawn(self, config: RigConfig) -> int:
         """Start a process with `config`; returns its pid when it is ready. Raises `HostError`."""
-        self._place.notes.unlink(missing_ok=True)
-        self._place.config.write_bytes(configs.encode(config))
+        self._paths.notes.unlink(missing_ok=True)
+        self._paths.config.write_bytes(configs.encode(config))
         paths = [*_ROOTS, *filter(None, [os.environ.get("PYTHONPATH")])]
         # One BLAS thread: its pool would be locked into memory, and nothing in the loop uses it.
         env = os.environ | {"PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
@@ -48,7 +48,7 @@ class Launcher:
         while time.monotonic() < deadline:
             if self.status(child) is not None:
                 raise HostError(f"the rig process of {config.name} ended at once:\n{self._log_end()}")
-            if self._place.running() == child:
+            if self._paths.running() == child:
                 return child
             await asyncio.sleep(0.02)
         os.kill(child, signal.SIGKILL)
@@ -59,7 +59,7 @@ class Launcher:
         """The settings in which the process that was started here last is not as `config` has it."""
         wanted = json.loads(configs.encode(config))
         try:
-            given = json.loads(self._place.config.read_bytes())
+            given = json.loads(self._paths.config.read_bytes())
         except (OSError, ValueError):
             given = {}
         names = (wanted.keys() | given.keys()) - {"after_loss"}
@@ -82,8 +82,8 @@ class Launcher:
             self._ended = os.waitstatus_to_exitcode(status)
 
     def _started(self, env: dict[str, str]) -> int:
-        command = [sys.executable, "-m", "fullpose_server.runtime.loop.process", "--config", str(self._place.config)]
-        with self._place.log.open("ab") as log, Path(os.devnull).open("rb") as nothing:
+        command = [sys.executable, "-m", "fullpose_server.runtime.loop.process", "--config", str(self._paths.config)]
+        with self._paths.log.open("ab") as log, Path(os.devnull).open("rb") as nothing:
             return os.posix_spawn(
                 sys.executable,
                 command,
@@ -98,4 +98,4 @@ class Launcher:
             )
 
     def _log_end(self) -> str:
-        return self._place.log.read_text("utf-8", "replace")[-2000:]
+        return self._paths.log.read_text("utf-8", "replace")[-2000:]

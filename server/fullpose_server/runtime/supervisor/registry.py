@@ -8,7 +8,7 @@ from pathlib import Path
 
 from fullpose_server.formats.rig_file import RigStore
 from fullpose_server.runtime.contract.config import RigConfig
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.supervisor.process_manager import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import IN_MOTION
@@ -63,7 +63,7 @@ class RigHosts:
         """Take over the rig processes that an earlier server left."""
         for entry in await asyncio.to_thread(self._rigs.all):
             name = entry.rig.name
-            if Place(self._directory(name)).running() is not None:
+            if RigPaths(self._directory(name)).running() is not None:
                 try:
                     await self.ensure(name)
                 except HostError:

@@ -19,7 +19,7 @@ from typing import Any
 
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.config import RigConfig
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared, SharedError
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.supervisor.control_link import ControlLink, RigUnreachableError
@@ -56,12 +56,12 @@ class RigHost:
         self.name = config.name
         self.rig = config.rig
         self.adopted = False
-        self._place = Place(config.directory)
+        self._paths = RigPaths(config.directory)
         self._shared: Shared | None = None
         self._last: messages.Published | None = None
         self._link: ControlLink | None = None
         self._linking = asyncio.Lock()
-        self._launcher = Launcher(self._place)
+        self._launcher = Launcher(self._paths)
         self._pid = 0
         self._pidfd = -1
         self._dead = True
@@ -78,8 +78,8 @@ class RigHost:
 
     async def start(self) -> None:
         """Spawn or adopt the rig process. Raises `HostError` where it does not come up."""
-        self._place.prepare()
-        pid = self._place.running()
+        self._paths.prepare()
+        pid = self._paths.running()
         self.adopted = pid is not None
         if pid is None:
             pid = await self._launcher.spawn(self.config)
@@ -135,10 +135,10 @@ class RigHost:
     async def command(self, command: str, args: dict[str, Any], who: str, lease: LeaseToken | None) -> messages.Reply:
         """Do a session command (see server/fullpose_server/session/states.py). A refusal is a reply, not an exception.
 
-        E-stop and stop take their own lane here too, so that they never queue behind another command.
+        E-stop and stop take their own channel here too, so that they never queue behind another command.
         """
         if command in (Command.STOP, Command.ESTOP):
-            return await self.lane(Command(command), who)
+            return await self.by_priority(Command(command), who)
         before = self._state()
         return (await self._ask(before, command, "command", who, command=command, args=args, lease=lease)).reply
 
@@ -154,13 +154,13 @@ class RigHost:
         self._flag("estop", who)
 
     async def stop(self, who: str) -> messages.Reply:
-        """Stop inside the limits, by the flag lane; needs no lease."""
-        return await self.lane(Command.STOP, who)
+        """Stop inside the limits, by the priority channel; needs no lease."""
+        return await self.by_priority(Command.STOP, who)
 
-    def lane(self, command: Command, who: str) -> Coroutine[Any, Any, messages.Reply]:
+    def by_priority(self, command: Command, who: str) -> Coroutine[Any, Any, messages.Reply]:
         """E-stop or stop by its flag, now; the coroutine, which is to be awaited, only waits for the loop's answer."""
         before = self._memory().snapshot(wait=False)  # microseconds; afterwards it may tell of the stop itself
-        return self._lane_done(command, self._flag(command, who), before)
+        return self._priority_done(command, self._flag(command, who), before)
 
     # --- what it shows ---
 
@@ -232,7 +232,7 @@ class RigHost:
         made.setblocking(False)
         made.bind("")  # an abstract name of its own, so that replies find the way back
         try:
-            with self._place.socket_address("live.sock") as address:
+            with self._paths.socket_address("live.sock") as address:
                 made.connect(address)
         except OSError as cause:
             made.close()
@@ -244,8 +244,8 @@ class RigHost:
     async def _attach(self, pid: int) -> None:
         link = ControlLink()
         try:
-            shared = Shared(self._place.memory())
-            await link.open(self._place)
+            shared = Shared(self._paths.memory())
+            await link.open(self._paths)
             self._pidfd = os.pidfd_open(pid)
             deadline = time.monotonic() + _PUBLISH_S
             while shared.snapshot(wait=False) is None:  # ready, and about to say so
@@ -277,7 +277,7 @@ class RigHost:
         self._announce()
 
     def _ended(self) -> bool:
-        return self._launcher.status(self._pid) is not None or self._place.running() != self._pid
+        return self._launcher.status(self._pid) is not None or self._paths.running() != self._pid
 
     async def _revive(self) -> None:
         """Start another process in place of the dead one, with the cause as its first alarm."""
@@ -295,7 +295,7 @@ class RigHost:
         told = f"the rig process died{how}{why} while {last.state}; the drive brakes by its own watchdog"
         await self._detach()
         last_revision = self.revision
-        pid = self._place.running()  # one that came up and could not be reached
+        pid = self._paths.running()  # one that came up and could not be reached
         if pid is None:
             pid = await self._launcher.spawn(replace(self.config, after_loss=told))
         self._offset = last_revision + 1
@@ -308,7 +308,7 @@ class RigHost:
                 try:
                     await self._revive()
                 except (HostError, OSError) as cause:
-                    self._place.log.open("a").write(f"server: {cause}\n")
+                    self._paths.log.open("a").write(f"server: {cause}\n")
                     await asyncio.sleep(1.0)
                 continue
             responding = self._beat_age() < SILENT_S
@@ -332,14 +332,14 @@ class RigHost:
 
     # --- inside: requests ---
 
-    def _flag(self, lane: str, who: str) -> int:
+    def _flag(self, channel: str, who: str) -> int:
         header = self._memory().header
-        header[f"{lane}_who"] = who.encode()[:63]
+        header[f"{channel}_who"] = who.encode()[:63]
         asked = time.monotonic_ns()
-        header[f"{lane}_request_ns"] = asked
+        header[f"{channel}_request_ns"] = asked
         return asked
 
-    async def _lane_done(self, command: Command, asked: int, published: bytes | None) -> messages.Reply:
+    async def _priority_done(self, command: Command, asked: int, published: bytes | None) -> messages.Reply:
         header = self._memory().header
         told = self._published() if published is None else messages.decode_published(published)
         before = State.DISCONNECTED.value if self._dead else told.state
@@ -364,7 +364,7 @@ class RigHost:
             assert self._link is not None
             if not self._link.open_for_requests:
                 link = ControlLink()
-                await link.open(self._place)
+                await link.open(self._paths)
                 await self._link.close()
                 self._link = link
             return self._link

@@ -4,7 +4,7 @@ import asyncio
 
 import numpy as np
 
-from fullpose_server.api.streams.frame_source import AT_ONCE, SESSION_FRESH_S, FrameSource, Turns
+from fullpose_server.api.streams.frame_source import AT_ONCE, SESSION_FRESH_S, FrameSource, RoundRobin
 from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
 
 
@@ -69,7 +69,7 @@ def ticking_bytes(seq: int) -> bytes:
 
 def test_a_request_waits_for_a_few_clients_and_not_for_all() -> None:
     async def crowd() -> None:
-        turns = Turns()
+        turns = RoundRobin()
         served: list[int] = []
 
         async def client(number: int) -> None:

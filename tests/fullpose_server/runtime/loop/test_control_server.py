@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from fullpose_server.runtime.contract import messages
-from fullpose_server.runtime.contract.rig_paths import Place, control_socket
+from fullpose_server.runtime.contract.rig_paths import RigPaths, control_socket
 from fullpose_server.runtime.loop.control_server import ControlServer
 
 
-class Desk:
+class CommandHandler:
     """Answers everything, with a long word, and keeps what it was asked."""
 
     def __init__(self) -> None:
@@ -24,25 +24,25 @@ class Desk:
 
 
 @pytest.fixture
-def place(tmp_path: Path) -> Place:
-    return Place(tmp_path)
+def paths(tmp_path: Path) -> RigPaths:
+    return RigPaths(tmp_path)
 
 
 @pytest.fixture
-def desk() -> Desk:
-    return Desk()
+def handler() -> CommandHandler:
+    return CommandHandler()
 
 
 @pytest.fixture
-def server(place: Place, desk: Desk) -> Iterator[ControlServer]:
-    made = ControlServer(place, desk.answer)
+def server(paths: RigPaths, handler: CommandHandler) -> Iterator[ControlServer]:
+    made = ControlServer(paths, handler.answer)
     yield made
     made.close()
 
 
-def client(place: Place) -> socket.socket:
+def client(paths: RigPaths) -> socket.socket:
     made = control_socket()
-    with place.socket_address("control.sock") as address:
+    with paths.socket_address("control.sock") as address:
         made.connect(address)
     return made
 
@@ -67,24 +67,24 @@ def answers(of: socket.socket) -> list[int]:
 
 
 def test_who_does_not_read_its_answers_is_not_obeyed_until_it_does(
-    place: Place, server: ControlServer, desk: Desk
+    paths: RigPaths, server: ControlServer, handler: CommandHandler
 ) -> None:
-    with client(place) as slow, client(place) as other:
+    with client(paths) as slow, client(paths) as other:
         sent = 0
         for _ in range(3000):  # far more than fit into the socket either way
             sent += send(slow, sent)
             server.poll()
-        assert 0 < len(desk.asked) < sent
-        stuck = len(desk.asked)
+        assert 0 < len(handler.asked) < sent
+        stuck = len(handler.asked)
         for _ in range(100):
             server.poll()
-        assert len(desk.asked) == stuck
+        assert len(handler.asked) == stuck
 
         assert send(other, 100_000)  # is not kept waiting
         for _ in range(3):
             server.poll()
         assert answers(other) == [100_000]
-        assert len(desk.asked) == stuck + 1
+        assert len(handler.asked) == stuck + 1
 
         heard: list[int] = []
         while len(heard) < sent:
@@ -94,30 +94,34 @@ def test_who_does_not_read_its_answers_is_not_obeyed_until_it_does(
                 heard += answers(slow)
             assert len(heard) > before
         assert heard == list(range(sent))
-        assert [n for n in desk.asked if n != 100_000] == heard  # each obeyed once, and in order
+        assert [n for n in handler.asked if n != 100_000] == heard  # each obeyed once, and in order
 
 
-def test_who_goes_with_an_answer_waiting_is_forgotten(place: Place, server: ControlServer, desk: Desk) -> None:
-    slow = client(place)
+def test_who_goes_with_an_answer_waiting_is_forgotten(
+    paths: RigPaths, server: ControlServer, handler: CommandHandler
+) -> None:
+    slow = client(paths)
     for number in range(3000):
         send(slow, number)
         server.poll()
     slow.close()
     for _ in range(10):
         server.poll()
-    with client(place) as other:
+    with client(paths) as other:
         send(other, 1)
         for _ in range(3):
             server.poll()
         assert answers(other) == [1]
 
 
-def test_what_is_no_request_ends_the_connection_it_came_by(place: Place, server: ControlServer, desk: Desk) -> None:
-    with client(place) as wrong, client(place) as right:
+def test_what_is_no_request_ends_the_connection_it_came_by(
+    paths: RigPaths, server: ControlServer, handler: CommandHandler
+) -> None:
+    with client(paths) as wrong, client(paths) as right:
         wrong.send(b"no request")
         assert send(right, 7)
         for _ in range(5):
             server.poll()
         assert answers(right) == [7]
         assert wrong.recv(10) == b""
-    assert desk.asked == [7]
+    assert handler.asked == [7]

@@ -1,4 +1,4 @@
-"""What the judge makes of late ticks: each tolerance by itself, and no warning in the way of a trip."""
+"""What the monitors makes of late ticks: each tolerance by itself, and no warning in the way of a trip."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -9,7 +9,7 @@ import pytest
 from fullpose.rig import builtin_rigs
 from fullpose_server.runtime.contract.config import GuardConfig, Tolerance
 from fullpose_server.runtime.contract.shared_memory import HEADER
-from fullpose_server.runtime.loop.monitors import Judge
+from fullpose_server.runtime.loop.monitors import Monitors
 from fullpose_server.runtime.motion.limit_guard import Guard
 from fullpose_server.session.alarms import Severity
 from fullpose_server.session.machine import SilencePolicy
@@ -39,9 +39,9 @@ class Loop:
 
 def run(guard: GuardConfig, ticks: int, lateness_ms: float, missed: int) -> Loop:
     loop = Loop(guard)
-    judge = Judge(loop)  # type: ignore[arg-type]
+    monitors = Monitors(loop)  # type: ignore[arg-type]
     for tick in range(ticks):
-        judge.lateness(tick * 1e-3 * (1 + missed), round(lateness_ms * 1e6), missed)
+        monitors.lateness(tick * 1e-3 * (1 + missed), round(lateness_ms * 1e6), missed)
     return loop
 
 
@@ -67,6 +67,6 @@ def test_zero_is_a_tolerance_of_lateness_and_none_is_off(trip: float | None, exp
 def test_a_rig_that_rests_may_be_late() -> None:
     loop = Loop(GuardConfig())
     loop.machine.moving = False
-    Judge(loop).lateness(0.0, 10**9, 1000)  # type: ignore[arg-type]
+    Monitors(loop).lateness(0.0, 10**9, 1000)  # type: ignore[arg-type]
     assert loop.raised == []
     assert loop.shared.header["misses"][0] == 1000

@@ -22,7 +22,7 @@ from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.live.steppers import LiveSettings
 from fullpose_server.runtime.live.packets import Kind, encode_sample
 from fullpose_server.runtime.motion.generator import Mode, Motion
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.session.states import Event
 from fullpose.rig import builtin_rigs
 
@@ -55,7 +55,7 @@ def tick():
     return event
 """
 LIVE = """
-source = LiveSource(rig, LiveConfig(delay_ms=4.0), Place(folder), 1e-3)
+source = LiveSource(rig, LiveConfig(delay_ms=4.0), RigPaths(folder), 1e-3)
 source.prepare(LiveSettings(sys.argv[2]))
 before = compiled()
 link = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from fullpose_server.runtime.contract import messages
-from fullpose_server.runtime.contract.rig_paths import Place
+from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.loop.control_server import ControlServer
 from fullpose_server.runtime.supervisor.control_link import MAX_REQUEST, ControlLink, RequestTooLargeError
 
@@ -30,12 +30,12 @@ async def linked(folder: Path) -> AsyncIterator[tuple[ControlLink, list[messages
             server.poll()
             await asyncio.sleep(0.001)
 
-    place = Place(folder)
-    server = ControlServer(place, answer)
+    paths = RigPaths(folder)
+    server = ControlServer(paths, answer)
     polling = asyncio.create_task(poll())
     link = ControlLink()
     try:
-        await link.open(place)
+        await link.open(paths)
         yield link, asked
     finally:
         await link.close()
