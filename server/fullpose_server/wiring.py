@@ -61,6 +61,7 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         stack.callback(scenes.close)
         await services.queue.start()
         stack.push_async_callback(services.queue.close)
+        services.comparisons.start()
         stack.push_async_callback(services.comparisons.close)
         stack.push_async_callback(services.hosts.close, stop_rigs=settings.stop_rigs_on_exit)
         await services.hosts.adopt()

@@ -47,7 +47,7 @@ def compare(
     from fullpose.compare import variants
     from fullpose_server.formats.output_file import write_text
     from fullpose_server.formats.rig_file import find_rig
-    from fullpose_server.planning.comparison import make_comparison
+    from fullpose_server.planning.make_comparison import make_comparison
 
     asked = variants([text for text in methods.split(",") if text.strip()])
     chosen = find_rig(rig).rig

@@ -30,11 +30,14 @@ Progress = Callable[[str, int, int], None]  # phase, done, total
 _NONE = np.empty((0, 4))
 
 
-def make_plan_folder(request: PlanRequest, progress: Progress) -> dict[str, Any]:
-    """Make the plan and write its folder; returns what the store keeps of it, JSON-ready.
+def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, Any]:
+    """Make the plan of a `PlanRequest`, as JSON has it, and write its folder.
+
+    Returns what the store keeps of it, JSON-ready.
 
     Raises `fullpose.errors.SolverError`. An infeasible flight is no error: it is written, not flyable.
     """
+    request = PlanRequest.from_json(values)
     progress("resample", 0, 1)
     time_s, q = read_arrays(request.trajectory)
     flight = resample(np.array(time_s), np.array(q), request.rate_hz)

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from fullpose.errors import InputError
-from fullpose.rig import FRAMES, FrameLimits, Geometry, Rig
+from fullpose.rig import FRAMES, Rig
+from fullpose_server.formats.rig_codec import rig_from_values, rig_values
 
 
 @dataclass(frozen=True)
@@ -25,21 +26,24 @@ class PlanRequest:
     remedy: dict[str, Any] | None = None  # kind, frame, limit: the flight is to be changed until it fits
 
     def to_json(self) -> dict[str, Any]:
-        """Values for `json`; infinities stay infinities."""
-        return {**asdict(self), "folder": str(self.folder), "trajectory": str(self.trajectory)}
+        """Values for `json`."""
+        return {
+            **asdict(self),
+            "rig": rig_values(self.rig),
+            "folder": str(self.folder),
+            "trajectory": str(self.trajectory),
+        }
 
     @classmethod
     def from_json(cls, values: dict[str, Any]) -> "PlanRequest":
         """The inverse of `to_json`."""
-        rig = values["rig"]
-        base, outer, middle, inner = (FrameLimits(**frame) for frame in rig["frames"])
         start = values["start"]
         return cls(
             **{
                 **values,
                 "folder": Path(values["folder"]),
                 "trajectory": Path(values["trajectory"]),
-                "rig": Rig(rig["name"], Geometry(rig["geometry"]), (base, outer, middle, inner)),
+                "rig": rig_from_values(values["rig"]),
                 "start": None if start is None else tuple(start),
             }
         )

@@ -10,9 +10,8 @@ from sqlalchemy import select
 
 from fullpose_server.errors import NotFoundError, TransitionError
 from fullpose_server.store.database import Database
+from fullpose_server.store.jobs import UNFINISHED, JobStatus
 from fullpose_server.store.tables import PlanRow, TrajectoryRow
-
-UNFINISHED = ("queued", "running")
 
 
 class PlanStore:
@@ -52,7 +51,7 @@ class PlanStore:
                 start_deg=start_deg,
                 remedy=remedy,
                 rate_hz=rate_hz,
-                status="queued",
+                status=JobStatus.QUEUED,
                 error=None,
                 result=None,
                 created=time.time(),
@@ -88,13 +87,13 @@ class PlanStore:
         """queued -> running; None where it is no longer queued."""
         with self._database.begin() as session:
             row = session.get(PlanRow, plan)
-            if row is None or row.status != "queued":
+            if row is None or row.status != JobStatus.QUEUED:
                 return None
-            row.status, row.started = "running", time.time()
+            row.status, row.started = JobStatus.RUNNING, time.time()
             return row
 
     def finish(
-        self, plan: str, status: str, *, result: dict[str, Any] | None = None, error: dict[str, Any] | None = None
+        self, plan: str, status: JobStatus, *, result: dict[str, Any] | None = None, error: dict[str, Any] | None = None
     ) -> None:
         """queued or running -> done, failed, cancelled or interrupted. Raises `TransitionError` from anywhere else."""
         with self._database.begin() as session:
@@ -106,10 +105,12 @@ class PlanStore:
     def after_restart(self) -> list[str]:
         """Mark what was running as interrupted, and clear its folder; returns the ids still queued, oldest first."""
         with self._database.begin() as session:
-            for row in session.scalars(select(PlanRow).where(PlanRow.status == "running")):
-                row.status, row.finished = "interrupted", time.time()
+            for row in session.scalars(select(PlanRow).where(PlanRow.status == JobStatus.RUNNING)):
+                row.status, row.finished = JobStatus.INTERRUPTED, time.time()
                 row.error = {"code": "interrupted", "message": "the server ended while this plan was being made"}
-            queued = session.scalars(select(PlanRow).where(PlanRow.status == "queued").order_by(PlanRow.created))
+            queued = session.scalars(
+                select(PlanRow).where(PlanRow.status == JobStatus.QUEUED).order_by(PlanRow.created)
+            )
             ids = [row.id for row in queued]
         for draft in self.root.glob(".*"):  # what a planner was writing
             shutil.rmtree(draft)

@@ -134,8 +134,8 @@ def test_a_planning_process_that_dies_fails_its_plan_and_is_replaced(stores: Sto
         queue.submit(victim)
         queue.submit(after)
         await begun(queue, victim)
-        assert queue._process is not None
-        os.kill(queue._process.pid, signal.SIGKILL)
+        assert queue.worker_pid is not None
+        os.kill(queue.worker_pid, signal.SIGKILL)
         assert await ended(stores, victim) == "failed"
         assert await ended(stores, after) == "done"
 

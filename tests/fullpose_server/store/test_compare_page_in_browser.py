@@ -10,7 +10,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import SCENARIOS
-from fullpose_server.planning.comparison import make_comparison
+from fullpose_server.planning.make_comparison import make_comparison
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 METHODS = ["exact", "lagrange", "three_axis"]

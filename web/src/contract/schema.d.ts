@@ -789,11 +789,7 @@ export interface components {
             report: components["schemas"]["ComparisonReportOut"] | null;
             /** Rig */
             rig: string;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "done" | "failed" | "cancelled" | "interrupted";
+            status: components["schemas"]["JobStatus"];
             /** Trajectory */
             trajectory: string;
             /** Trajectory Name */
@@ -951,11 +947,7 @@ export interface components {
              */
             authenticated: boolean;
             limits: components["schemas"]["ServerLimits"];
-            /**
-             * Planner
-             * @enum {string}
-             */
-            planner: "idle" | "busy" | "starting" | "stopped";
+            planner: components["schemas"]["RunnerStatus"];
             /** Rigs */
             rigs: {
                 [key: string]: components["schemas"]["RigHealth"];
@@ -1046,6 +1038,12 @@ export interface components {
             /** Message */
             message: string;
         };
+        /**
+         * JobStatus
+         * @description Of a plan or a comparison.
+         * @enum {string}
+         */
+        JobStatus: "queued" | "running" | "done" | "failed" | "cancelled" | "interrupted";
         /** Jog */
         Jog: {
             args: components["schemas"]["JogArgs"];
@@ -1757,11 +1755,7 @@ export interface components {
             ] | null;
             /** Started At */
             started_at: string | null;
-            /**
-             * Status
-             * @enum {string}
-             */
-            status: "queued" | "running" | "done" | "failed" | "cancelled" | "interrupted";
+            status: components["schemas"]["JobStatus"];
             /** Trajectory */
             trajectory: string;
             /** Trajectory Name */
@@ -2209,6 +2203,12 @@ export interface components {
              */
             state: string;
         };
+        /**
+         * RunnerStatus
+         * @description What a runner does.
+         * @enum {string}
+         */
+        RunnerStatus: "starting" | "idle" | "busy" | "stopped";
         /**
          * RunOut
          * @description A recorded run; errors are those of the flight itself, running or held, leads left out.

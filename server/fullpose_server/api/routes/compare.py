@@ -3,6 +3,7 @@
 import asyncio
 import time
 from datetime import UTC, datetime
+from typing import Any
 
 from fastapi import APIRouter, Response
 from starlette.responses import FileResponse
@@ -11,11 +12,13 @@ from fullpose.compare import variants
 from fullpose.registry import Variant, parse_variant, variant
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import ApiError
+from fullpose_server.api.progress import progress_out
 from fullpose_server.api.schemas.compare import CompareIn, ComparisonOut, MethodIn
-from fullpose_server.api.schemas.plans import ProgressOut
 from fullpose_server.formats.start_pose import start_pose
 from fullpose_server.planning.compare_length import check_length
-from fullpose_server.planning.comparisons import PAGE, UNFINISHED, CompareRequest, Comparison
+from fullpose_server.planning.compare_request import PAGE, CompareRequest
+from fullpose_server.planning.comparisons import Comparison
+from fullpose_server.store.jobs import JobStatus
 
 router = APIRouter(prefix="/compare", tags=["compare"])
 
@@ -39,21 +42,22 @@ async def add_comparison(body: CompareIn, response: Response, services: Services
         start=start,
         created=time.time(),
     )
-    job = services.comparisons.submit(request)
+    job = await services.comparisons.submit(request)
     response.headers["Location"] = f"/api/v1/compare/{job.id}"
-    return _out(services, job, with_report=True)
+    return _out(services, job)
 
 
 @router.get("")
 async def list_comparisons(services: ServicesDep) -> list[ComparisonOut]:
     """All comparisons, newest first, without their reports."""
-    return [_out(services, job, with_report=False) for job in services.comparisons.all()]
+    return [_out(services, job) for job in services.comparisons.all()]
 
 
 @router.get("/{comparison}")
 async def get_comparison(comparison: str, services: ServicesDep) -> ComparisonOut:
     """One comparison, how far it is, and its report once it is done."""
-    return _out(services, services.comparisons.get(comparison), with_report=True)
+    job = services.comparisons.get(comparison)
+    return _out(services, job, await asyncio.to_thread(services.comparisons.report, comparison))
 
 
 @router.get(
@@ -64,9 +68,9 @@ async def get_comparison(comparison: str, services: ServicesDep) -> ComparisonOu
 async def comparison_page(comparison: str, services: ServicesDep) -> FileResponse:
     """Table and plots as one self-contained HTML page."""
     job = services.comparisons.get(comparison)
-    if job.status != "done":
+    if job.status is not JobStatus.DONE:
         raise ApiError(409, "not-done", f"comparison {comparison} is {job.status}: it has no page")
-    return FileResponse(services.comparisons.folder(comparison) / PAGE, media_type="text/html; charset=utf-8")
+    return FileResponse(job.folder / PAGE, media_type="text/html; charset=utf-8")
 
 
 @router.delete("/{comparison}", status_code=204)
@@ -81,13 +85,12 @@ def _variant(method: str | MethodIn) -> Variant:
     return variant(method.method, method.options, method.label)
 
 
-def _out(services: Services, job: Comparison, *, with_report: bool) -> ComparisonOut:
-    done = job.status == "done"
+def _out(services: Services, job: Comparison, report: dict[str, Any] | None = None) -> ComparisonOut:
     return ComparisonOut.model_validate(
         {
             "id": job.id,
             "status": job.status,
-            "progress": _progress(job),
+            "progress": progress_out(job.status, services.comparisons.progress(job.id)),
             "trajectory": job.request.trajectory_sha256,
             "trajectory_name": job.request.name,
             "rig": job.request.rig.name,
@@ -95,14 +98,7 @@ def _out(services: Services, job: Comparison, *, with_report: bool) -> Compariso
             "rate_hz": job.request.rate_hz,
             "created_at": datetime.fromtimestamp(job.request.created, UTC),
             "error": job.error,
-            "page": f"/api/v1/compare/{job.id}/page" if done else None,
-            "report": services.comparisons.report(job.id) if done and with_report else None,
+            "page": f"/api/v1/compare/{job.id}/page" if job.status is JobStatus.DONE else None,
+            "report": report,
         }
     )
-
-
-def _progress(job: Comparison) -> ProgressOut:
-    if job.status not in UNFINISHED:
-        return ProgressOut(phase=job.status, done=1, total=1, fraction=1.0)
-    phase, done, total = job.progress
-    return ProgressOut(phase=phase or job.status, done=done, total=total, fraction=min(1.0, done / total))

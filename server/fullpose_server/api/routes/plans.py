@@ -13,13 +13,13 @@ from fullpose.resample import check_length
 from fullpose.rig import FRAMES
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import ApiError
+from fullpose_server.api.progress import progress_out
 from fullpose_server.api.schemas.plans import (
     JobErrorOut,
     MethodOut,
     PlanIn,
     PlanOut,
     PlanSamples,
-    ProgressOut,
     RemedyChange,
     RemedyIn,
     RemedyOut,
@@ -30,7 +30,7 @@ from fullpose_server.formats.plan_folder import read_plan, rig_hash
 from fullpose_server.formats.start_pose import start_pose
 from fullpose_server.pages.thin import thin
 from fullpose_server.planning.plan_request import check_frame
-from fullpose_server.store.plans import UNFINISHED
+from fullpose_server.store.jobs import JobStatus
 from fullpose_server.store.tables import PlanRow
 
 router = APIRouter(tags=["plans"])
@@ -113,7 +113,7 @@ def plan_samples(
 ) -> PlanSamples:
     """Angles, rates, accelerations and error of a plan, thinned to about `points` samples, for plots."""
     row = services.plans.get(plan)
-    if row.status != "done":
+    if row.status != JobStatus.DONE:
         raise ApiError(409, "not-done", f"plan {plan} is {row.status}: it has no samples")
     return _samples(plan, services, points)
 
@@ -123,7 +123,7 @@ async def remove_plan(plan: str, services: ServicesDep) -> None:
     """Cancel a plan that is being made (it stays, cancelled); remove one that is not."""
     row = await asyncio.to_thread(services.plans.get, plan)
     try:
-        if row.status in UNFINISHED:
+        if not JobStatus(row.status).finished:
             await services.queue.cancel(plan)
             return
         for host in services.hosts.all():
@@ -142,7 +142,7 @@ def _out(services: Services, row: PlanRow) -> PlanOut:
         {
             "id": row.id,
             "status": row.status,
-            "progress": _progress(services, row),
+            "progress": progress_out(JobStatus(row.status), services.queue.progress(row.id)),
             "trajectory": row.trajectory,
             "trajectory_name": services.trajectories.get(row.trajectory).name,
             "rig": row.rig,
@@ -155,7 +155,7 @@ def _out(services: Services, row: PlanRow) -> PlanOut:
             "finished_at": _time(row.finished),
             "error": None if row.error is None else JobErrorOut(**row.error),
             "feasible": result.get("feasible"),
-            "flyable": row.status == "done" and refusal is None,
+            "flyable": row.status == JobStatus.DONE and refusal is None,
             "refusal": refusal,
             "plan_hash": result.get("plan_hash"),
             "rate_hz": row.rate_hz,
@@ -182,15 +182,6 @@ def _remedy(asked: dict[str, Any], found: dict[str, Any]) -> RemedyOut:
             "alternatives": found.get("alternatives", []),
         }
     )
-
-
-def _progress(services: Services, row: PlanRow) -> ProgressOut:
-    now = services.queue.progress(row.id)
-    if now is None:
-        ended = row.status not in UNFINISHED
-        return ProgressOut(phase=row.status, done=int(ended), total=1, fraction=1.0 if ended else 0.0)
-    fraction = min(1.0, now.done / now.total) if now.total else 0.0
-    return ProgressOut(phase=now.phase, done=now.done, total=now.total, fraction=fraction)
 
 
 def _samples(plan: str, services: Services, points: int) -> PlanSamples:

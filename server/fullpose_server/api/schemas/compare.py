@@ -9,13 +9,13 @@ from fullpose_server.api.schemas.plans import (
     BlockingOut,
     IterationsOut,
     JobErrorOut,
-    JobStatus,
     OptionValue,
     PeaksOut,
     ProgressOut,
     StepTimeOut,
     ViolationOut,
 )
+from fullpose_server.store.jobs import JobStatus
 
 
 class MethodIn(Wire):

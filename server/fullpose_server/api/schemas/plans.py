@@ -15,8 +15,8 @@ from fullpose_server.api.schemas.base import (
     Sha256,
     Wire,
 )
+from fullpose_server.store.jobs import JobStatus
 
-JobStatus = Literal["queued", "running", "done", "failed", "cancelled", "interrupted"]
 OptionValue = bool | int | float | str
 
 

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.session import RigHealth, StateName
+from fullpose_server.planning.runner import RunnerStatus
 
 
 class RunOut(Wire):
@@ -64,7 +65,7 @@ class HealthOut(Wire):
     server_time: float
     uptime_s: float
     authenticated: bool = Field(description="False: no users are configured, anyone who reaches the port may command")
-    planner: Literal["idle", "busy", "starting", "stopped"]
+    planner: RunnerStatus
     limits: ServerLimits
     rigs: dict[str, RigHealth]
     warnings: list[str]

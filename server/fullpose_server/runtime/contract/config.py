@@ -1,13 +1,13 @@
 """What a rig process is told at its start: one JSON file, one frozen dataclass."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from fullpose.rig import FRAMES, FrameLimits, Geometry, Rig
+from fullpose.rig import Rig
+from fullpose_server.formats.rig_codec import rig_from_values, rig_values
 from fullpose_server.operating import (
     ConfigError,
     GuardConfig,
@@ -28,10 +28,7 @@ __all__ = [
     "Tolerance",
     "decode",
     "encode",
-    "rig_from_dict",
-    "rig_to_dict",
 ]
-_LIMIT_KEYS = ("min", "max", "max_rate", "max_acceleration", "weight", "home")
 
 
 @dataclass(frozen=True)
@@ -74,21 +71,6 @@ class RigConfig(OperatingConfig):
         super().__post_init__()
 
 
-def rig_to_dict(rig: Rig) -> dict[str, Any]:
-    """`rig` as JSON can hold it [rad]: a limit that is not there is left out."""
-    frames = {
-        name: {key: value for key in _LIMIT_KEYS if math.isfinite(value := getattr(frame, key))}
-        for name, frame in zip(FRAMES, rig.frames, strict=True)
-    }
-    return {"name": rig.name, "geometry": str(rig.geometry), "frames": frames}
-
-
-def rig_from_dict(raw: dict[str, Any]) -> Rig:
-    """The inverse of `rig_to_dict`. Raises KeyError, ValueError or `RigError` on what is no rig."""
-    base, outer, middle, inner = (FrameLimits(**raw["frames"][name]) for name in FRAMES)
-    return Rig(raw["name"], Geometry(raw["geometry"]), (base, outer, middle, inner))
-
-
 def encode(config: RigConfig) -> bytes:
     """`config` as JSON."""
 
@@ -98,13 +80,13 @@ def encode(config: RigConfig) -> bytes:
         raise NotImplementedError(type(value))
 
     raw = {name: getattr(config, name) for name in config.__dataclass_fields__}
-    return msgspec.json.format(msgspec.json.encode(raw | {"rig": rig_to_dict(config.rig)}, enc_hook=hook))
+    return msgspec.json.format(msgspec.json.encode(raw | {"rig": rig_values(config.rig)}, enc_hook=hook))
 
 
 def decode(data: bytes) -> RigConfig:
     """The inverse of `encode`. Raises ValueError with what is wrong."""
     raw = msgspec.json.decode(data)
-    raw["rig"] = rig_from_dict(raw["rig"])
+    raw["rig"] = rig_from_values(raw["rig"])
 
     def hook(kind: type, value: Any) -> Any:
         if kind is Path:

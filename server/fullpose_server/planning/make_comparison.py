@@ -1,9 +1,13 @@
 """One comparison from a flight: solved with each method, measured, reported, drawn."""
 
+import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion
@@ -13,8 +17,11 @@ from fullpose.registry import Variant
 from fullpose.resample import resample
 from fullpose.rig import Rig
 from fullpose_server.formats.compare_report import comparison_report
+from fullpose_server.formats.output_file import write_text
 from fullpose_server.pages.compare_page import compare_page
 from fullpose_server.planning.compare_length import check_length, check_samples
+from fullpose_server.planning.compare_request import PAGE, REPORT, read_request
+from fullpose_server.store.trajectories import read_arrays
 
 Progress = Callable[[str, int, int], None]  # label, done, total
 
@@ -58,3 +65,25 @@ def make_comparison(
         raise MethodError(f"no method that is asked for applies to {rig.name}: {reasons}")
     report = comparison_report(rows, rig, name, at, note)
     return Comparison(report, compare_page(report, rows, rig, attitude))
+
+
+def make_comparison_folder(values: Mapping[str, str], report_progress: Progress) -> dict[str, str]:
+    """Make the comparison that a job's folder asks for, and put report and page there.
+
+    Raises as `make_comparison` does. The report is written last: a folder with a report is done.
+    """
+    folder = Path(values["folder"])
+    request = read_request(folder)
+    at, q = read_arrays(Path(request.trajectory))
+    order = {variant.label: k for k, variant in enumerate(request.methods)}
+
+    def progress(label: str, done: int, total: int) -> None:
+        report_progress(label, order[label] * total + done, len(order) * total)
+
+    start = None if request.start is None else np.array(request.start)
+    made = make_comparison(
+        request.name, np.array(at), np.array(q), request.rig, request.methods, start, request.rate_hz, progress
+    )
+    write_text(folder / PAGE, made.page)
+    write_text(folder / REPORT, json.dumps(made.report))
+    return {}

@@ -18,7 +18,7 @@ from fullpose.verify import verify
 from fullpose_server.formats.report import exact_percent, exact_text
 from fullpose_server.pages.compare_page import beyond_limits
 from fullpose_server.planning import compare_length
-from fullpose_server.planning.comparison import Comparison, make_comparison
+from fullpose_server.planning.make_comparison import Comparison, make_comparison
 
 RIGS = builtin_rigs()
 METHODS = ["exact", "lagrange", "three_axis"]

@@ -1,18 +1,22 @@
-"""The planning process: reads requests from stdin, one JSON a line, and answers on stdout likewise.
+"""The worker process: makes plans and comparisons.
 
-A process of its own, so that planning takes neither the server's event loop nor its GIL, and so that cancelling is
+It reads requests from stdin, one JSON a line, and answers on stdout likewise.
+
+A process of its own, so that the numerics take neither the server's event loop nor its GIL, and so that cancelling is
 killing it, which works at any moment. It ends when its stdin does, so it never outlives the server.
 """
 
 import json
 import os
+import queue
 import sys
+import threading
 import time
 from typing import IO, Any
 
 from fullpose.errors import SolverError
 from fullpose_server.errors import ServerError, job_code
-from fullpose_server.planning.plan_request import PlanRequest
+from fullpose_server.planning.job import Kind
 
 REPORTS_S = 0.05  # shortest time between two reports of progress
 
@@ -22,20 +26,37 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # whatever prints must not write into the protocol
     os.nice(5)  # a rig's loop and the server come first
-    from fullpose_server.planning.make_plan import make_plan_folder  # Numba and SciPy: a second that start-up hides
+    # Numba and SciPy: a second that start-up hides.
+    from fullpose_server.planning.make_comparison import make_comparison_folder
+    from fullpose_server.planning.make_plan import make_plan_folder
 
+    makers = {Kind.PLAN: make_plan_folder, Kind.COMPARISON: make_comparison_folder}
     _say(answers, {"ready": True})
-    for line in sys.stdin:
+    for line in iter(_requests().get, None):
+        message = json.loads(line)
         reporter = _Reporter(answers)
         try:
-            result = make_plan_folder(PlanRequest.from_json(json.loads(line)), reporter.report)
+            result = makers[Kind(message["kind"])](message["request"], reporter.report)
         except (SolverError, ServerError) as error:
             _say(answers, {"failed": {"code": job_code(error), "message": str(error)}})
         except Exception as error:  # noqa: BLE001 - the job failed, the process goes on; the server logs it
-            message = f"{type(error).__name__}: {error}"
-            _say(answers, {"failed": {"code": "internal", "message": message}})
+            text = f"{type(error).__name__}: {error}"
+            _say(answers, {"failed": {"code": "internal", "message": text}})
         else:
             _say(answers, {"done": result})
+
+
+def _requests() -> "queue.SimpleQueue[str]":
+    """Lines of stdin as they come; the process ends with it, in the middle of a job too."""
+    lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+
+    def read() -> None:
+        for line in sys.stdin:
+            lines.put(line)
+        os._exit(0)
+
+    threading.Thread(target=read, daemon=True).start()
+    return lines
 
 
 class _Reporter:

@@ -1,0 +1,167 @@
+"""Runs jobs one after another in a worker process, with progress and cancel."""
+
+import asyncio
+import contextlib
+import json
+import logging
+import sys
+from collections.abc import Mapping
+from enum import StrEnum
+from typing import Any
+
+from fullpose_server.errors import TransitionError
+from fullpose_server.planning.job import Job, Outcome, Progress, failed
+from fullpose_server.planning.worker_process import WorkerProcess
+from fullpose_server.store.jobs import JobStatus
+
+log = logging.getLogger(__name__)
+
+
+class RunnerStatus(StrEnum):
+    """What a runner does."""
+
+    STARTING = "starting"
+    IDLE = "idle"
+    BUSY = "busy"
+    STOPPED = "stopped"
+
+
+class _Running:
+    """The job in work: whether the worker still has it, whether it was cancelled, and when its end is written."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        self.progress = Progress("starting", 0, 1)
+        self.answered = False
+        self.cancelled = False
+        self.written = asyncio.Event()
+
+
+class Runner:
+    """One queue of jobs and one worker process. Use it from one event loop.
+
+    prewarm: the worker is there before the first job, and stays; otherwise it lives as long as a job. Whatever a job
+    comes to, the next one runs: a worker that died is replaced, and an end that cannot be written down is logged.
+    """
+
+    def __init__(self, name: str, *, prewarm: bool, program: tuple[str, ...] | None = None) -> None:
+        self._name = name
+        self._prewarm = prewarm
+        self._waiting: asyncio.Queue[Job] = asyncio.Queue()
+        self._running: _Running | None = None
+        self._worker = WorkerProcess(program or (sys.executable, "-m", "fullpose_server.planning.worker"))
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def status(self) -> RunnerStatus:
+        """What it does; `stopped` where nothing will be run any more."""
+        if self._task is None or self._task.done():
+            return RunnerStatus.STOPPED
+        if self._running is not None:
+            return RunnerStatus.BUSY
+        return RunnerStatus.IDLE if self._worker.ready or not self._prewarm else RunnerStatus.STARTING
+
+    @property
+    def worker_pid(self) -> int | None:
+        """Of the worker process, where there is one."""
+        return self._worker.pid
+
+    def progress(self, job: str) -> Progress | None:
+        """Of the job in work; None for any other."""
+        return self._running.progress if self._running is not None and self._running.job.id == job else None
+
+    def start(self) -> None:
+        """Begin to take jobs."""
+        self._task = asyncio.create_task(self._run(), name=f"{self._name} runner")
+
+    def submit(self, job: Job) -> None:
+        """Queue a job."""
+        self._waiting.put_nowait(job)
+
+    async def cancel(self, job: str) -> bool:
+        """End a job in work, and wait until its end is written; False where it is not in work."""
+        running = self._running
+        if running is None or running.job.id != job:
+            return False
+        if not running.answered:  # the worker has it: what is answered already is done, and stays so
+            running.cancelled = True
+            await self._worker.kill()
+        await running.written.wait()
+        return running.cancelled
+
+    async def close(self) -> None:
+        """End; the job in work is marked interrupted, the queued ones are left as they are."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+        await self._worker.kill()
+
+    async def _run(self) -> None:
+        while True:
+            if self._prewarm and not self._worker.ready:
+                with contextlib.suppress(OSError):  # said again, by every job that needs it
+                    await self._worker.start()
+            job = await self._waiting.get()
+            running = self._running = _Running(job)
+            try:
+                await self._write(job, await self._outcome(running))
+            except asyncio.CancelledError:
+                error = {"code": "interrupted", "message": f"the server ended while this {job.kind} was being made"}
+                await self._write(job, Outcome(JobStatus.INTERRUPTED, error=error))
+                raise
+            finally:
+                self._running = None
+                running.written.set()
+            if not self._prewarm:
+                await self._worker.kill()
+
+    async def _outcome(self, running: _Running) -> Outcome | None:
+        job = running.job
+        try:
+            request = await asyncio.to_thread(job.begin)
+            if request is None:
+                return None
+            outcome = await self._made(running, {"kind": job.kind, "request": request})
+        except Exception as fault:
+            log.exception("%s %s", job.kind, job.id)
+            return failed("internal", f"{type(fault).__name__}: {fault}")
+        if running.cancelled:
+            error = {"code": "cancelled", "message": "cancelled before it was done"}
+            return Outcome(JobStatus.CANCELLED, error=error)
+        if outcome.error is not None:
+            log.warning("%s %s: %s", job.kind, job.id, outcome.error["message"])
+        return outcome
+
+    async def _made(self, running: _Running, message: Mapping[str, Any]) -> Outcome:
+        """What the worker makes of it, or how it ended."""
+        if not self._worker.ready:
+            try:
+                await self._worker.start()
+            except OSError as refusal:
+                return failed(
+                    "worker", f"the process that makes it did not start: {refusal}; the server's log says why"
+                )
+        if running.cancelled:
+            return failed("cancelled", "before it began")
+        async for answer in self._worker.ask(json.dumps(message)):
+            match answer:
+                case {"progress": [str(phase), int(done), int(total)]}:
+                    running.progress = Progress(phase, done, total)
+                case {"done": result}:
+                    running.answered = True
+                    return Outcome(JobStatus.DONE, result=result)
+                case {"failed": error}:
+                    running.answered = True
+                    return Outcome(JobStatus.FAILED, error=error)
+        return failed("worker-ended", f"the process that made it ended {await self._worker.ended()}, out of memory?")
+
+    async def _write(self, job: Job, outcome: Outcome | None) -> None:
+        if outcome is None:
+            return
+        try:
+            # To its end, even where the server ends meanwhile: who was told a result has it.
+            await asyncio.shield(asyncio.to_thread(job.finish, outcome))
+        except TransitionError:
+            pass  # it was written before
+        except Exception:
+            log.exception("the end of %s %s could not be written down", job.kind, job.id)
