@@ -5,9 +5,9 @@ import contextlib
 import json
 import logging
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import StrEnum
-from typing import Any
+from typing import Any, TypeVar
 
 from fullpose_server.errors import TransitionError
 from fullpose_server.planning.job import Job, Outcome, Progress, failed
@@ -15,6 +15,7 @@ from fullpose_server.planning.worker_process import WorkerProcess
 from fullpose_server.store.jobs import JobStatus
 
 log = logging.getLogger(__name__)
+Result = TypeVar("Result")
 
 
 class RunnerStatus(StrEnum):
@@ -118,7 +119,7 @@ class Runner:
     async def _outcome(self, running: _Running) -> Outcome | None:
         job = running.job
         try:
-            request = await asyncio.to_thread(job.begin)
+            request = await _to_its_end(job.begin)
             if request is None:
                 return None
             outcome = await self._made(running, {"kind": job.kind, "request": request})
@@ -159,9 +160,18 @@ class Runner:
         if outcome is None:
             return
         try:
-            # To its end, even where the server ends meanwhile: who was told a result has it.
-            await asyncio.shield(asyncio.to_thread(job.finish, outcome))
+            await _to_its_end(job.finish, outcome)
         except TransitionError:
             pass  # it was written before
         except Exception:
             log.exception("the end of %s %s could not be written down", job.kind, job.id)
+
+
+async def _to_its_end(work: Callable[..., Result], *arguments: Any) -> Result:
+    """In a thread, and to its end where the server ends meanwhile: two writes of one row never run side by side."""
+    running = asyncio.ensure_future(asyncio.to_thread(work, *arguments))
+    try:
+        return await asyncio.shield(running)
+    except asyncio.CancelledError:
+        await asyncio.wait([running])
+        raise

@@ -36,16 +36,23 @@ class Made:
         self.id = name
         self.outcomes: list[Outcome] = []
         self.writing, self.may_write, self.ended = threading.Event(), threading.Event(), asyncio.Event()
+        self.beginning, self.may_begin, self.begun = threading.Event(), threading.Event(), False
         self.may_write.set()
+        self.may_begin.set()
+        self.finished_while_beginning = False
         self._do, self._refusal = do, refusal
         self._loop = asyncio.get_running_loop()
 
     def begin(self) -> Mapping[str, Any] | None:
+        self.beginning.set()
+        assert self.may_begin.wait(60.0)
+        self.begun = True
         return {"do": self._do}
 
     def finish(self, outcome: Outcome) -> None:
         self.writing.set()
         assert self.may_write.wait(60.0)
+        self.finished_while_beginning = not self.begun
         if self.outcomes:
             raise TransitionError("it has ended")
         if self._refusal is None:
@@ -151,6 +158,24 @@ def test_a_worker_that_cannot_start_fails_every_job_and_says_so() -> None:
 
     run(work, ("/nonexistent/python",))
     run(work, (sys.executable, "-c", "raise SystemExit(7)"))
+
+
+def test_its_end_is_not_written_while_its_beginning_is() -> None:
+    """Both write the same row: the database lets only one of them."""
+
+    async def work(runner: Runner) -> None:
+        job = Made("job")
+        job.may_begin.clear()
+        runner.submit(job)
+        await asyncio.to_thread(job.beginning.wait, 60.0)
+        closing = asyncio.create_task(runner.close())
+        await asyncio.sleep(0)
+        job.may_begin.set()
+        await closing
+        assert [outcome.status for outcome in job.outcomes] == [JobStatus.INTERRUPTED]
+        assert not job.finished_while_beginning
+
+    run(work)
 
 
 def test_who_closes_interrupts_the_job_in_work_and_leaves_the_queue() -> None:
