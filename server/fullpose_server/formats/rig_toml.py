@@ -3,6 +3,7 @@
 import math
 
 from fullpose.rig import FRAMES, Rig
+from fullpose_server.formats.degrees import written_degrees
 from fullpose_server.formats.rig_file import FRAME_KEYS
 
 
@@ -14,13 +15,5 @@ def rig_toml(rig: Rig) -> str:
         for key, field in FRAME_KEYS.items():
             value = getattr(rig.frames[index], field)
             if math.isfinite(value):
-                lines.append(f"{key} = {value if key == 'weight' else _degrees(value)!r}")
+                lines.append(f"{key} = {value if key == 'weight' else written_degrees(value)!r}")
     return "\n".join(lines) + "\n"
-
-
-def _degrees(value: float) -> float:
-    """The shortest number of degrees that is `value` [rad]; rounding of `math.degrees` alone would change it."""
-    degrees = math.degrees(value)
-    tried = [round(degrees, digits) for digits in range(18)]
-    tried += [math.nextafter(degrees, -math.inf), math.nextafter(degrees, math.inf)]
-    return next((number for number in tried if math.radians(number) == value), degrees)

@@ -9,6 +9,7 @@ from typing import Any
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import Angle, Ramp, Scenario, Sine, Term
 from fullpose_server.errors import FileError
+from fullpose_server.formats.degrees import written_degrees
 from fullpose_server.formats.rig_keys import is_number
 
 MOST_SAMPLES = 4_000_000  # more than an hour at 1 kHz
@@ -107,7 +108,7 @@ def _term_lines(term: Term) -> list[str]:
 
 
 def _degrees(radians: float) -> str:
-    return f"{round(math.degrees(radians), 12):g}"
+    return f"{written_degrees(radians):g}"
 
 
 def _start(start: list[Any], number: Callable[..., float]) -> tuple[float, float, float, float]:

@@ -19,6 +19,7 @@ from fullpose.compare import Row
 from fullpose.rig import FRAMES, Rig
 from fullpose.solution import Solution
 from fullpose.verify import POSITION_TOLERANCE, TOLERANCE, differences
+from fullpose_server.formats.degrees import written_degrees
 from fullpose_server.pages.compare_table import metrics_table
 from fullpose_server.pages.thin import thin
 
@@ -66,7 +67,7 @@ def _summary(report: dict[str, Any]) -> str:
 def _limits(rig: Rig, index: int) -> dict[str, float | None]:
     frame = rig.frames[index]
     bounds = {"min": frame.min, "max": frame.max, "rate": frame.max_rate, "acceleration": frame.max_acceleration}
-    return {name: math.degrees(value) if math.isfinite(value) else None for name, value in bounds.items()}
+    return {name: written_degrees(value) if math.isfinite(value) else None for name, value in bounds.items()}
 
 
 def _flight(rows: tuple[Row, ...], attitude: Array) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import numpy as np
 from fullpose._typing import Array
 from fullpose.rig import FRAMES
 from fullpose.solution import Solution
+from fullpose_server.formats.degrees import written_degrees
 from fullpose_server.formats.report import why_infeasible
 from fullpose_server.pages.thin import thin
 
@@ -63,7 +64,7 @@ def _summary(report: dict[str, Any]) -> str:
 def _plot(title: str, unit: str, solution: Solution, table: Array, limits: Any) -> dict[str, Any]:
     lines = []
     for index in solution.rig.geometry.frames:
-        bounds = [math.degrees(v) for v in limits(solution.rig.frames[index]) if math.isfinite(v)]
+        bounds = [written_degrees(v) for v in limits(solution.rig.frames[index]) if math.isfinite(v)]
         lines.append({"name": FRAMES[index], "values": _values(table[:, index]), "limits": bounds})
     return {"title": title, "unit": unit, "log": False, "lines": lines}
 

@@ -195,3 +195,13 @@ def test_a_folder_in_use_is_refused(server: LiveServer) -> None:
 )  # fmt: skip
 def test_what_counts_as_this_machine(host: str, own: bool) -> None:
     assert is_loopback(host) is own
+
+
+def test_limits_are_the_numbers_that_were_written(server: LiveServer) -> None:
+    """They were told as they are kept: 500.00000000000006 deg/s^2."""
+    rigs = {rig["name"]: rig for rig in server.http.get("/rigs").json()}
+    for rig in rigs.values():
+        for frame in filter(None, rig["frames"].values()):
+            for key, value in frame.items():
+                assert value is None or key == "weight" or value == round(value), (rig["name"], key, value)
+    assert rigs["vertical-limited"]["frames"]["inner"]["min_deg"] == -60.0

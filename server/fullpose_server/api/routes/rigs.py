@@ -8,6 +8,7 @@ from fastapi import APIRouter
 from fullpose.rig import FRAMES, FrameLimits
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.schemas.rigs import FrameOut, FramesOut, PayloadOut, RigOut
+from fullpose_server.formats.degrees import written_degrees
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.rig_file import RigEntry
 
@@ -48,7 +49,7 @@ def _rig(services: Services, entry: RigEntry) -> RigOut:
 
 def _frame(limits: FrameLimits) -> FrameOut:
     def deg(value: float) -> float | None:
-        return math.degrees(value) if math.isfinite(value) else None
+        return written_degrees(value) if math.isfinite(value) else None
 
     return FrameOut(
         min_deg=deg(limits.min),
@@ -56,5 +57,5 @@ def _frame(limits: FrameLimits) -> FrameOut:
         max_rate_deg_s=deg(limits.max_rate),
         max_acceleration_deg_s2=deg(limits.max_acceleration),
         weight=limits.weight,
-        home_deg=math.degrees(limits.home),
+        home_deg=written_degrees(limits.home),
     )
