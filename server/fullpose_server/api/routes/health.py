@@ -8,7 +8,7 @@ from fastapi import APIRouter, Response
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.metrics import exposition
 from fullpose_server.api.schemas.records import HealthOut, ServerLimits
-from fullpose_server.api.schemas.session_view import health_out
+from fullpose_server.api.session_view import health_out
 from fullpose_server.version import VERSION
 
 router = APIRouter(tags=["health"])

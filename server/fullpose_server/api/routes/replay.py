@@ -16,8 +16,8 @@ from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.session import SessionOut
-from fullpose_server.api.schemas.session_view import replayed_session
 from fullpose_server.api.schemas.stream import Hello, Playback, Replayed, ReplayOf, SessionChanged, StopNow
+from fullpose_server.api.session_view import replayed_session
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.api.streams.frames import record
 from fullpose_server.api.streams.stream_client import StreamClient

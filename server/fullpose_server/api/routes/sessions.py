@@ -19,7 +19,7 @@ from fullpose_server.api.schemas.session import (
     LoadArgs,
     SessionOut,
 )
-from fullpose_server.api.schemas.session_view import lease_out, session_out
+from fullpose_server.api.session_view import lease_out, session_out
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.runtime.supervisor.control_link import RequestTooLargeError
 from fullpose_server.runtime.supervisor.process_manager import HostError

@@ -16,9 +16,9 @@ from fullpose.registry import find_step, method_options
 from fullpose.rig import Rig
 from fullpose.solve import solve
 from fullpose.verify import attitude_errors, payload_attitudes, verify
+from fullpose_server.api.attitudes import attitudes, limited_list
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import ApiError, problem_of
-from fullpose_server.api.schemas.batch import attitudes, limited_list
 from fullpose_server.api.schemas.plans import ReportOut
 from fullpose_server.api.schemas.solve import (
     Opened,

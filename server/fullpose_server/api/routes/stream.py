@@ -12,8 +12,8 @@ from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.session import SessionOut
-from fullpose_server.api.schemas.session_view import session_out
 from fullpose_server.api.schemas.stream import Hello, Playback, SessionChanged, StopNow, Stopped
+from fullpose_server.api.session_view import session_out
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.api.streams.frames import record
 from fullpose_server.api.streams.stream_client import StreamClient
