@@ -1,44 +1,43 @@
-"""What every way to command a session shares: the lanes of stop and E-stop, the answer, the audit."""
+"""What every way to command a session shares: the priority channel of stop and E-stop, the answer, the audit."""
 
 import asyncio
 from collections.abc import Coroutine
-from typing import Any, Literal
+from typing import Any
 
 from fullpose_server.api.deps import Services
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.session import CommandOut, LeaseToken
-from fullpose_server.runtime.contract.messages import Reply
-from fullpose_server.session.states import Command
+from fullpose_server.runtime.contract.messages import ErrorBody, Reply
+from fullpose_server.session.errors import IllegalCommandError
+from fullpose_server.session.states import Command, State
 
 # Codes of the session's refusals that are not about its state.
 _STATUS = {"lease_needed": 403, "lease_lost": 403, "rig_unreachable": 503}
 
 
-def by_priority(
-    services: Services, rig: str, word: Literal["stop", "estop"], who: str
-) -> Coroutine[Any, Any, CommandOut]:
+def by_priority(services: Services, rig: str, command: Command, who: str) -> Coroutine[Any, Any, CommandOut]:
     """Stop or E-stop, now: the flag is set in here. The coroutine, which is to be awaited, answers and audits.
 
     Raises `ApiError` where no rig process runs.
     """
     host = services.hosts.get(rig)
     if host is None:
-        raise ApiError(
-            409,
-            "illegal-command",
-            f"{word} is not possible: no rig process runs",
-            state="disconnected",
-            command=word,
-            allowed=["connect"],
-        )
-    done = host.by_priority(Command(word), who)
+        raise refusal(without_process(command))
+    done = host.by_priority(command, who)
 
     async def answered() -> CommandOut:
         reply = await done
-        await audit(services, rig, who, word, {}, None, reply)
-        return answer(word, reply)
+        await audit(services, rig, who, command, {}, None, reply)
+        return answer(command, reply)
 
     return answered()
+
+
+def without_process(command: Command) -> Reply:
+    """The refusal of a rig that no process runs for: it can be connected, and nothing else."""
+    state, can = State.DISCONNECTED, (Command.CONNECT,)
+    error = IllegalCommandError(state, command, can)
+    return Reply(False, state, state, 0, ErrorBody(error.code, str(error), state, command, list(can)))
 
 
 def answer(word: str, reply: Reply) -> CommandOut:

@@ -1,45 +1,33 @@
 """The contract: FastAPI's own, with problem documents for every error and the WebSocket messages beside the rest."""
 
-from typing import Any
+from collections.abc import Sequence
+from itertools import chain
+from typing import Any, get_args
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic.json_schema import models_json_schema
 
 from fullpose_server.api.errors import MEDIA_TYPE
-from fullpose_server.api.schemas.base import Problem
+from fullpose_server.api.schemas.base import Problem, Wire
 from fullpose_server.api.schemas.live import LiveOpened, LiveProblem, LiveReplyOut, LiveSampleIn, OpenLive
 from fullpose_server.api.schemas.solve import Opened, OpenSolve, Solved, SolveProblem, SolveSamples
-from fullpose_server.api.schemas.stream import (
-    Hello,
-    Pause,
-    Ping,
-    Play,
-    Pong,
-    Replayed,
-    Seek,
-    SessionChanged,
-    Speed,
-    StopNow,
-    Stopped,
-    StreamProblem,
-    Subscribe,
-    Telemetry,
-)
+from fullpose_server.api.schemas.stream import STREAM_IN, STREAM_OUT
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
 
-MESSAGES = (
-    *(Subscribe, Ping, StopNow, Seek, Speed, Pause, Play),
-    *(OpenSolve, SolveSamples),
-    *(OpenLive, LiveSampleIn),
-    TrajectoryIn,
-)
-ANSWERS = (
-    Problem,
-    *(Hello, Telemetry, SessionChanged, Replayed, Pong, Stopped, StreamProblem),
-    *(Opened, Solved, SolveProblem),
-    *(LiveOpened, LiveReplyOut, LiveProblem),
-)
+# The messages of each WebSocket, what a client sends and what the server answers; each tagged by its `type`.
+SENT = {
+    "StreamMessageIn": STREAM_IN,
+    "SolveMessageIn": (OpenSolve, SolveSamples),
+    "LiveMessageIn": (OpenLive, LiveSampleIn),
+}
+ANSWERED = {
+    "StreamMessageOut": STREAM_OUT,
+    "SolveMessageOut": (Opened, Solved, SolveProblem),
+    "LiveMessageOut": (LiveOpened, LiveReplyOut, LiveProblem),
+}
+MESSAGES = (*chain.from_iterable(SENT.values()), TrajectoryIn)
+ANSWERS = (Problem, *chain.from_iterable(ANSWERED.values()))
 
 
 def contract(app: FastAPI) -> dict[str, Any]:
@@ -59,6 +47,8 @@ def contract(app: FastAPI) -> dict[str, Any]:
     )
     for name, schema in extra["$defs"].items():
         schemas.setdefault(name, schema)
+    for union, models in (SENT | ANSWERED).items():
+        schemas[union] = _union(models)
     schemas.pop("HTTPValidationError", None)
     schemas.pop("ValidationError", None)
     for path in document["paths"].values():
@@ -66,6 +56,16 @@ def contract(app: FastAPI) -> dict[str, Any]:
             _problems(operation["responses"])
     document["components"]["schemas"] = dict(sorted(schemas.items()))
     return document
+
+
+def _union(models: Sequence[type[Wire]]) -> dict[str, Any]:
+    """One of these messages, by its `type`: for clients whose types are made from the contract."""
+    refs = {model: f"#/components/schemas/{model.__name__}" for model in models}
+    mapping = {word: ref for model, ref in refs.items() for word in get_args(model.model_fields["type"].annotation)}
+    return {
+        "oneOf": [{"$ref": ref} for ref in refs.values()],
+        "discriminator": {"propertyName": "type", "mapping": mapping},
+    }
 
 
 def _problems(responses: dict[str, Any]) -> None:

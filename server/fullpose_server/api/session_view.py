@@ -19,7 +19,7 @@ from fullpose_server.runtime.recording.playback import RunPlayback
 from fullpose_server.runtime.supervisor.registry import RigHosts
 from fullpose_server.session.alarms import Alarm
 from fullpose_server.session.lease import Lease
-from fullpose_server.session.states import STATES
+from fullpose_server.session.states import STATES, State
 
 
 def session_out(hosts: RigHosts, rig: str, rate_hz: float) -> SessionOut:
@@ -140,7 +140,7 @@ def _without_process(rig: str, rate_hz: float, why: str = "no rig process: conne
     )
     return SessionOut(
         rig=rig,
-        state="disconnected",
+        state=State.DISCONNECTED,
         revision=0,
         allowed=["connect"],
         lease=LeaseOut(holder=None, epoch=0, sequence=0, expires_s=None, requested_by=[]),

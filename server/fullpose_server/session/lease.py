@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 
 from fullpose_server.session.errors import LeaseError
 
+LEASE_NEEDED = "this command needs the lease: take it first"
+
 
 @dataclass(frozen=True)
 class LeaseToken:
@@ -88,7 +90,7 @@ class LeaseBook:
     def checked(self, who: str, token: LeaseToken | None, now: float) -> "LeaseBook":
         """The book after a command of `who` under `token`; raises where the command is not the holder's newest."""
         if token is None or self.holder is None:
-            raise LeaseError("lease_needed", "this command needs the lease: take it first")
+            raise LeaseError("lease_needed", LEASE_NEEDED)
         if token.epoch != self.epoch or who != self.holder:
             raise LeaseError("lease_lost", f"the lease is {self.holder}'s in epoch {self.epoch}, not {token.epoch}")
         if token.sequence <= self.sequence:

@@ -627,11 +627,7 @@ export interface components {
             message: string;
             /** Number */
             number: number;
-            /**
-             * Severity
-             * @enum {string}
-             */
-            severity: "warning" | "fault" | "emergency";
+            severity: components["schemas"]["Severity"];
             /**
              * Time S
              * @description Seconds since 1970, of the first occurrence
@@ -691,16 +687,8 @@ export interface components {
             lease_sequence: number | null;
             /** Rig */
             rig: string;
-            /**
-             * State After
-             * @enum {string}
-             */
-            state_after: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
-            /**
-             * State Before
-             * @enum {string}
-             */
-            state_before: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            state_after: components["schemas"]["State"];
+            state_before: components["schemas"]["State"];
             /** Who */
             who: string;
         };
@@ -728,16 +716,8 @@ export interface components {
             command: string;
             /** Revision */
             revision: number;
-            /**
-             * State After
-             * @enum {string}
-             */
-            state_after: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
-            /**
-             * State Before
-             * @enum {string}
-             */
-            state_before: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            state_after: components["schemas"]["State"];
+            state_before: components["schemas"]["State"];
         };
         /**
          * CompareIn
@@ -988,9 +968,8 @@ export interface components {
             server_time: number;
             session: components["schemas"]["SessionOut"];
             /**
-             * Type
-             * @default hello
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "hello";
         };
@@ -1170,6 +1149,8 @@ export interface components {
                 [key: string]: boolean | number | string;
             };
         };
+        LiveMessageIn: components["schemas"]["OpenLive"] | components["schemas"]["LiveSampleIn"];
+        LiveMessageOut: components["schemas"]["LiveOpened"] | components["schemas"]["LiveReplyOut"] | components["schemas"]["LiveProblem"];
         /**
          * LiveOpened
          * @description The answer to open. What comes next is the session's: arm, go_live.
@@ -1184,15 +1165,10 @@ export interface components {
             rate_hz: number;
             /** Rig */
             rig: string;
+            state: components["schemas"]["State"];
             /**
-             * State
+             * @description discriminator enum property added by openapi-typescript
              * @enum {string}
-             */
-            state: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
-            /**
-             * Type
-             * @default opened
-             * @constant
              */
             type: "opened";
         };
@@ -1241,9 +1217,8 @@ export interface components {
         LiveProblem: {
             problem: components["schemas"]["Problem"];
             /**
-             * Type
-             * @default problem
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "problem";
         };
@@ -1278,9 +1253,8 @@ export interface components {
             /** Time S */
             time_s: number;
             /**
-             * Type
-             * @default reply
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "reply";
         };
@@ -1323,8 +1297,8 @@ export interface components {
              */
             time_s: number;
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "sample";
         };
@@ -1533,9 +1507,8 @@ export interface components {
             /** Rig */
             rig: string;
             /**
-             * Type
-             * @default opened
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "opened";
         };
@@ -1573,8 +1546,8 @@ export interface components {
                 [key: string]: boolean | number | string;
             };
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "open";
         };
@@ -1608,8 +1581,8 @@ export interface components {
                 number
             ] | null;
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "open";
         };
@@ -1619,8 +1592,8 @@ export interface components {
          */
         Pause: {
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "pause";
         };
@@ -1659,8 +1632,8 @@ export interface components {
             /** T */
             t: number;
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "ping";
         };
@@ -1829,8 +1802,8 @@ export interface components {
          */
         Play: {
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "play";
         };
@@ -1841,9 +1814,8 @@ export interface components {
             /** T */
             t: number;
             /**
-             * Type
-             * @default pong
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "pong";
         };
@@ -2036,9 +2008,8 @@ export interface components {
             /** Time S */
             time_s: number;
             /**
-             * Type
-             * @default replay
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "replay";
         };
@@ -2317,8 +2288,8 @@ export interface components {
              */
             time_s: number;
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "seek";
         };
@@ -2337,9 +2308,8 @@ export interface components {
             server_time: number;
             session: components["schemas"]["SessionOut"];
             /**
-             * Type
-             * @default session
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "session";
         };
@@ -2375,12 +2345,14 @@ export interface components {
             rig: string;
             /** Run Id */
             run_id: string | null;
-            /**
-             * State
-             * @enum {string}
-             */
-            state: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+            state: components["schemas"]["State"];
         };
+        /**
+         * Severity
+         * @description How bad: a warning leaves the motion alone, a fault brakes, an emergency brakes and disables.
+         * @enum {string}
+         */
+        Severity: "warning" | "fault" | "emergency";
         /**
          * Solved
          * @description Answer to one `samples` message, row by row; `limited.sample` counts within the message.
@@ -2400,9 +2372,8 @@ export interface components {
             /** Time S */
             time_s: number[];
             /**
-             * Type
-             * @default solved
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "solved";
         };
@@ -2445,6 +2416,8 @@ export interface components {
             /** Time S */
             time_s: number[];
         };
+        SolveMessageIn: components["schemas"]["OpenSolve"] | components["schemas"]["SolveSamples"];
+        SolveMessageOut: components["schemas"]["Opened"] | components["schemas"]["Solved"] | components["schemas"]["SolveProblem"];
         /** SolveOut */
         SolveOut: {
             /** Angles Deg */
@@ -2466,9 +2439,8 @@ export interface components {
         SolveProblem: {
             problem: components["schemas"]["Problem"];
             /**
-             * Type
-             * @default problem
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "problem";
         };
@@ -2499,8 +2471,8 @@ export interface components {
             /** Time S */
             time_s: number[];
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "samples";
         };
@@ -2515,8 +2487,8 @@ export interface components {
              */
             factor: number;
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "speed";
         };
@@ -2531,6 +2503,12 @@ export interface components {
             command: "start";
             lease?: components["schemas"]["LeaseToken"] | null;
         };
+        /**
+         * State
+         * @description Where a rig's session is. The order is the code in telemetry (`State.code`).
+         * @enum {string}
+         */
+        State: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
         /** StepTimeOut */
         StepTimeOut: {
             /** Median */
@@ -2551,7 +2529,7 @@ export interface components {
         };
         /**
          * StopNow
-         * @description Live only: the lanes of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; handled at once.
+         * @description Live only: the priority channel of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; at once.
          */
         StopNow: {
             /**
@@ -2561,7 +2539,7 @@ export interface components {
              */
             client: string | null;
             /**
-             * Type
+             * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             type: "stop" | "estop";
@@ -2578,23 +2556,16 @@ export interface components {
             command: "stop" | "estop";
             /** Revision */
             revision: number;
+            state_after: components["schemas"]["State"];
+            state_before: components["schemas"]["State"];
             /**
-             * State After
+             * @description discriminator enum property added by openapi-typescript
              * @enum {string}
-             */
-            state_after: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
-            /**
-             * State Before
-             * @enum {string}
-             */
-            state_before: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
-            /**
-             * Type
-             * @default stopped
-             * @constant
              */
             type: "stopped";
         };
+        StreamMessageIn: components["schemas"]["Subscribe"] | components["schemas"]["Ping"] | components["schemas"]["StopNow"] | components["schemas"]["Seek"] | components["schemas"]["Speed"] | components["schemas"]["Pause"] | components["schemas"]["Play"];
+        StreamMessageOut: components["schemas"]["Hello"] | components["schemas"]["Telemetry"] | components["schemas"]["SessionChanged"] | components["schemas"]["Replayed"] | components["schemas"]["Pong"] | components["schemas"]["Stopped"] | components["schemas"]["StreamProblem"];
         /**
          * StreamProblem
          * @description A message of the client that was not understood; the stream goes on.
@@ -2602,9 +2573,8 @@ export interface components {
         StreamProblem: {
             problem: components["schemas"]["Problem"];
             /**
-             * Type
-             * @default problem
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "problem";
         };
@@ -2646,8 +2616,8 @@ export interface components {
              */
             topics: ("telemetry" | "session")[];
             /**
-             * Type
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "subscribe";
         };
@@ -2701,9 +2671,8 @@ export interface components {
             /** Tracking Error Deg */
             tracking_error_deg: (number | null)[];
             /**
-             * Type
-             * @default telemetry
-             * @constant
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
              */
             type: "telemetry";
             /** Wall Ns */
@@ -3621,7 +3590,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Connect"] | components["schemas"]["Load"] | components["schemas"]["Arm"] | components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Stop"] | components["schemas"]["Move"] | components["schemas"]["Home"] | components["schemas"]["Jog"] | components["schemas"]["GoLive"] | components["schemas"]["Disarm"] | components["schemas"]["Unload"] | components["schemas"]["Estop"] | components["schemas"]["Acknowledge"] | components["schemas"]["Reset"];
+                "application/json": components["schemas"]["Connect"] | components["schemas"]["Load"] | components["schemas"]["Unload"] | components["schemas"]["Arm"] | components["schemas"]["Disarm"] | components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Stop"] | components["schemas"]["Move"] | components["schemas"]["Home"] | components["schemas"]["Jog"] | components["schemas"]["GoLive"] | components["schemas"]["Estop"] | components["schemas"]["Acknowledge"] | components["schemas"]["Reset"];
             };
         };
         responses: {

@@ -1,11 +1,12 @@
-"""Sessions: the snapshot, commands, the lease, stop and E-stop on lanes of their own, alarms."""
+"""Sessions: the snapshot, commands, the lease, stop and E-stop on the priority channel, alarms."""
 
 import asyncio
-from typing import Annotated, Any, Literal
+from dataclasses import replace
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Body
 
-from fullpose_server.api.commanding import answer, audit, by_priority, refusal
+from fullpose_server.api.commanding import answer, audit, by_priority, refusal, without_process
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import ApiError
 from fullpose_server.api.schemas.session import (
@@ -15,7 +16,6 @@ from fullpose_server.api.schemas.session import (
     LeaseIn,
     LeaseOut,
     LeaseToken,
-    Load,
     LoadArgs,
     SessionOut,
 )
@@ -24,8 +24,9 @@ from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.runtime.supervisor.control_link import RequestTooLargeError
 from fullpose_server.runtime.supervisor.process_manager import HostError
 from fullpose_server.runtime.supervisor.rig_client import RefusedError, RigHost
+from fullpose_server.session.lease import LEASE_NEEDED
 from fullpose_server.session.lease import LeaseToken as Token
-from fullpose_server.session.states import Command, State
+from fullpose_server.session.states import NEEDS_NO_LEASE, Command
 
 router = APIRouter(prefix="/rigs/{rig}", tags=["session"])
 
@@ -52,13 +53,13 @@ async def get_alarms(rig: str, services: ServicesDep) -> list[AlarmOut]:
 @router.post("/commands", responses=REFUSED)
 async def command(rig: str, body: Annotated[CommandIn, Body()], services: ServicesDep, who: WhoDep) -> CommandOut:
     """Command the session. Needs the lease, but for stop and estop."""
-    if body.command in ("stop", "estop"):
-        return await _by_priority(services, rig, body.command, who)
+    if body.command in NEEDS_NO_LEASE:
+        return await _by_priority(services, rig, Command(body.command), who)
     host = services.hosts.get(rig)
     if host is None:
         raise await _refused_without_process(services, rig, body, who)
     args: dict[str, Any] = body.args.model_dump(exclude_none=True)
-    if isinstance(body, Load):
+    if isinstance(body.args, LoadArgs):
         args = await _load_args(services, rig, body.args)
     token = None if body.lease is None else Token(body.lease.epoch, body.lease.sequence)
     try:
@@ -72,13 +73,13 @@ async def command(rig: str, body: Annotated[CommandIn, Body()], services: Servic
 @router.post("/stop", responses=REFUSED)
 async def stop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
     """Brake every frame inside its limits. Needs no lease and waits for no other command."""
-    return await _by_priority(services, rig, "stop", who)
+    return await _by_priority(services, rig, Command.STOP, who)
 
 
 @router.post("/estop", responses=REFUSED)
 async def estop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
     """Brake as fast as the limits allow, then disable the drive. Needs no lease and waits for no other command."""
-    return await _by_priority(services, rig, "estop", who)
+    return await _by_priority(services, rig, Command.ESTOP, who)
 
 
 @router.post("/lease", responses=REFUSED)
@@ -94,10 +95,10 @@ async def release_lease(rig: str, services: ServicesDep, who: WhoDep) -> LeaseOu
     return await _lease(services, await _host(services, rig), "release", who, None)
 
 
-async def _by_priority(services: Services, rig: str, word: Literal["stop", "estop"], who: str) -> CommandOut:
+async def _by_priority(services: Services, rig: str, command: Command, who: str) -> CommandOut:
     if services.hosts.get(rig) is None:  # otherwise nothing is waited for before the flag is set
         await _known(services, rig)
-    return await by_priority(services, rig, word, who)
+    return await by_priority(services, rig, command, who)
 
 
 async def _lease(services: Services, host: RigHost, action: str, who: str, to: str | None) -> LeaseOut:
@@ -117,12 +118,10 @@ async def _lease(services: Services, host: RigHost, action: str, who: str, to: s
 async def _refused_without_process(services: Services, rig: str, body: CommandIn, who: str) -> ApiError:
     """Nobody holds the lease of a rig without a process: no command is started one for, taking the lease does that."""
     await _known(services, rig)
-    state = State.DISCONNECTED
-    can = [str(Command.CONNECT)]
-    code, why = "lease_needed", "this command needs the lease: take it first"
-    if body.command not in can:
-        code, why = "illegal_command", f"{body.command} is not possible while {state}; allowed now: {', '.join(can)}"
-    reply = Reply(False, state, state, 0, ErrorBody(code, why, state, body.command, can))
+    reply = without_process(Command(body.command))
+    if body.command == Command.CONNECT:
+        lease_needed = ErrorBody("lease_needed", LEASE_NEEDED, reply.state_before, body.command, [body.command])
+        reply = replace(reply, error=lease_needed)
     await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
     return refusal(reply)
 

@@ -19,6 +19,7 @@ from fullpose_server.api.streams.frames import record
 from fullpose_server.api.streams.stream_client import StreamClient
 from fullpose_server.runtime.contract.telemetry import SAMPLE
 from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.session.states import Command
 
 HEALTH_S = 1.0  # the session is told at least this often
 router = APIRouter(tags=["stream"])
@@ -65,7 +66,8 @@ class _Rig:
         raise ApiError(422, "not-a-replay", f"{message.type}: a rig as it lives can only be watched")
 
     def stop(self, message: StopNow) -> Awaitable[Wire]:
-        done = by_priority(self._services, self._rig, message.type, message.client or self._who)
+        who = message.client or self._who
+        done = by_priority(self._services, self._rig, Command(message.type), who)
 
         async def answered() -> Wire:
             return Stopped.model_validate((await done).model_dump())

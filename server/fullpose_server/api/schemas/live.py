@@ -9,7 +9,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fullpose_server.api.schemas.base import Four, Problem, Wire
-from fullpose_server.api.schemas.session import LeaseToken, LiveLoad, StateName
+from fullpose_server.api.schemas.session import LeaseToken, LiveLoad
+from fullpose_server.session.states import State
 
 Three = tuple[float, float, float]
 SampleStatus = Literal["followed", "limited", "dropped", "idle"]
@@ -50,7 +51,7 @@ class LiveOpened(Wire):
 
     type: Literal["opened"] = "opened"
     rig: str
-    state: StateName
+    state: State
     rate_hz: float
     loaded: bool = Field(description="Whether the session has a live source loaded")
 

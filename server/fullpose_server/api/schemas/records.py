@@ -6,8 +6,9 @@ from typing import Any, Literal
 from pydantic import Field
 
 from fullpose_server.api.schemas.base import Wire
-from fullpose_server.api.schemas.session import RigHealth, StateName
+from fullpose_server.api.schemas.session import RigHealth
 from fullpose_server.planning.runner import RunnerStatus
+from fullpose_server.session.states import State
 
 
 class RunOut(Wire):
@@ -46,8 +47,8 @@ class AuditOut(Wire):
     args: dict[str, Any]
     lease_epoch: int | None
     lease_sequence: int | None
-    state_before: StateName
-    state_after: StateName
+    state_before: State
+    state_after: State
     accepted: bool
     detail: str | None
 

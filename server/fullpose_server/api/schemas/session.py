@@ -1,25 +1,16 @@
-"""The session on the wire: commands as a tagged union, the lease, the snapshot."""
+"""The session on the wire: commands as a tagged union, the lease, the snapshot.
 
-from typing import Annotated, Literal, Self
+Its words are the session's own (`session.states`, `session.alarms`): the models are made from them.
+"""
 
-from pydantic import Field, model_validator
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
+
+from pydantic import Field, create_model, model_validator
 
 from fullpose_server.api.schemas.base import Four, FrameName, Wire
+from fullpose_server.session.alarms import Severity
+from fullpose_server.session.states import Command, State
 
-StateName = Literal[
-    "disconnected",
-    "idle",
-    "ready",
-    "armed",
-    "positioning",
-    "running",
-    "held",
-    "stopping",
-    "live",
-    "estopped",
-    "faulted",
-]
-Severity = Literal["warning", "fault", "emergency"]
 _INT64 = 2**63  # what database and rig process hold
 Ordinal = Annotated[int, Field(ge=0, lt=_INT64)]
 Word = Annotated[str, Field(max_length=64)]
@@ -81,117 +72,47 @@ class AcknowledgeArgs(Wire):
     numbers: list[Ordinal] | None = Field(default=None, max_length=256, description="Of alarms; null: all that stand")
 
 
-class _Command(Wire):
+class CommandBody(Wire):
+    """What every command has: its word, its arguments, the lease."""
+
     lease: LeaseToken | None = None
+    command: Command
+    args: Wire
 
 
-class Connect(_Command):
-    command: Literal["connect"]
-    args: NoArgs = NoArgs()
+# The commands whose arguments are not empty; the second: whether they may be left out.
+_ARGS: dict[Command, tuple[type[Wire], bool]] = {
+    Command.LOAD: (LoadArgs, False),
+    Command.ARM: (ArmArgs, True),
+    Command.MOVE: (MoveArgs, False),
+    Command.JOG: (JogArgs, False),
+    Command.ACKNOWLEDGE: (AcknowledgeArgs, True),
+}
 
 
-class Load(_Command):
-    command: Literal["load"]
-    args: LoadArgs
+def _model(word: Command) -> type[CommandBody]:
+    """The body of one command, called as the session calls it: go_live is GoLive."""
+    args, optional = _ARGS.get(word, (NoArgs, True))
+    fields: dict[str, Any] = {
+        "command": (Literal[word.value], ...),
+        "args": (args, args() if optional else ...),
+    }
+    return create_model(word.value.title().replace("_", ""), __base__=CommandBody, **fields)
 
 
-class Arm(_Command):
-    command: Literal["arm"]
-    args: ArmArgs = ArmArgs()
-
-
-class Start(_Command):
-    command: Literal["start"]
-    args: NoArgs = NoArgs()
-
-
-class Hold(_Command):
-    command: Literal["hold"]
-    args: NoArgs = NoArgs()
-
-
-class Resume(_Command):
-    command: Literal["resume"]
-    args: NoArgs = NoArgs()
-
-
-class Stop(_Command):
-    command: Literal["stop"]
-    args: NoArgs = NoArgs()
-
-
-class Move(_Command):
-    command: Literal["move"]
-    args: MoveArgs
-
-
-class Home(_Command):
-    command: Literal["home"]
-    args: NoArgs = NoArgs()
-
-
-class Jog(_Command):
-    command: Literal["jog"]
-    args: JogArgs
-
-
-class GoLive(_Command):
-    command: Literal["go_live"]
-    args: NoArgs = NoArgs()
-
-
-class Disarm(_Command):
-    command: Literal["disarm"]
-    args: NoArgs = NoArgs()
-
-
-class Unload(_Command):
-    command: Literal["unload"]
-    args: NoArgs = NoArgs()
-
-
-class Estop(_Command):
-    command: Literal["estop"]
-    args: NoArgs = NoArgs()
-
-
-class Acknowledge(_Command):
-    command: Literal["acknowledge"]
-    args: AcknowledgeArgs = AcknowledgeArgs()
-
-
-class Reset(_Command):
-    command: Literal["reset"]
-    args: NoArgs = NoArgs()
-
-
-CommandIn = Annotated[
-    Connect
-    | Load
-    | Arm
-    | Start
-    | Hold
-    | Resume
-    | Stop
-    | Move
-    | Home
-    | Jog
-    | GoLive
-    | Disarm
-    | Unload
-    | Estop
-    | Acknowledge
-    | Reset,
-    Field(discriminator="command"),
-]
+COMMANDS = {word: _model(word) for word in Command}
+if TYPE_CHECKING:  # a union made from a table is none to a type checker
+    CommandIn = CommandBody
+else:
+    CommandIn = Annotated[Union[tuple(COMMANDS.values())], Field(discriminator="command")]  # noqa: UP007
 
 
 class CommandOut(Wire):
     """A command that was accepted: what the session was and is."""
 
     command: str
-    state_before: StateName
-    state_after: StateName
+    state_before: State
+    state_after: State
     revision: int
 
 
@@ -291,7 +212,7 @@ class SessionOut(Wire):
     """All an operator must know: state, what is allowed, who holds the lease, the plan, the alarms, health, pose."""
 
     rig: str
-    state: StateName
+    state: State
     revision: int
     allowed: list[str]
     lease: LeaseOut

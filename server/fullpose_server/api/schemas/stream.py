@@ -4,12 +4,14 @@ A binary telemetry frame is little-endian: magic u4 "FPT1", version u2, count u2
 then `count` records as `hello.record` describes them.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from fullpose_server.api.schemas.base import CLIENT_NAME, Problem, Wire
-from fullpose_server.api.schemas.session import SessionOut, StateName
+from fullpose_server.api.schemas.session import SessionOut
+from fullpose_server.runtime.contract.telemetry import dtype_description
+from fullpose_server.session.states import State
 
 Topic = Literal["telemetry", "session"]
 Encoding = Literal["json", "binary"]
@@ -59,7 +61,7 @@ class Play(Wire):
 
 
 class StopNow(Wire):
-    """Live only: the lanes of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; handled at once."""
+    """Live only: the priority channel of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; at once."""
 
     type: Literal["stop", "estop"]
     client: ClientName | None = Field(default=None, description="As the header X-Fullpose-Client, which it replaces")
@@ -107,33 +109,26 @@ class Hello(Wire):
     replay: ReplayOf | None = None
 
 
-class Telemetry(Wire):
+class _Telemetry(Wire):
     """Samples as columns. `seq` is the newest sample's; `dropped` counts what this client has missed so far."""
 
     type: Literal["telemetry"] = "telemetry"
     seq: int
     server_time: float
     dropped: int
-    sample_seq: list[int]
-    time_ns: list[int]
-    wall_ns: list[int]
-    state: list[int]
-    flags: list[int]
-    revision: list[int]
-    path_time_s: list[float | None]
-    path_scale: list[float | None]
-    demand: list[list[float | None]]
-    demand_rate: list[list[float | None]]
-    demand_acceleration: list[list[float | None]]
-    measured: list[list[float | None]]
-    measured_rate: list[list[float | None]]
-    target: list[list[float | None]]
-    solve_error_deg: list[float | None]
-    tracking_error_deg: list[float | None]
-    following_error_deg: list[list[float | None]]
-    margin: list[float | None]
-    lateness_us: list[float | None]
-    tick: list[int]
+
+
+def _columns() -> dict[str, Any]:
+    """A column for each field of the sample: whole numbers, or floats where null stands for what is not finite."""
+    columns: dict[str, Any] = {}
+    for field in dtype_description():
+        name = "sample_seq" if field["name"] == "seq" else field["name"]
+        value: Any = int if field["type"].lstrip("<|").startswith(("u", "i")) else float | None
+        columns[name] = (list[value] if field["count"] == 1 else list[list[value]], ...)
+    return columns
+
+
+Telemetry = create_model("Telemetry", __base__=_Telemetry, __doc__=_Telemetry.__doc__, **_columns())
 
 
 class SessionChanged(Wire):
@@ -163,8 +158,8 @@ class Stopped(Wire):
 
     type: Literal["stopped"] = "stopped"
     command: Literal["stop", "estop"]
-    state_before: StateName
-    state_after: StateName
+    state_before: State
+    state_after: State
     revision: int
 
 
@@ -175,6 +170,5 @@ class StreamProblem(Wire):
     problem: Problem
 
 
-StreamOut = Annotated[
-    Hello | Telemetry | SessionChanged | Replayed | Pong | Stopped | StreamProblem, Field(discriminator="type")
-]
+STREAM_IN = (Subscribe, Ping, StopNow, Seek, Speed, Pause, Play)
+STREAM_OUT = (Hello, Telemetry, SessionChanged, Replayed, Pong, Stopped, StreamProblem)
