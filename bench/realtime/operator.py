@@ -10,7 +10,7 @@ import numpy as np
 from fullpose.attitude import quaternion_from_dcm
 from fullpose.rig import Rig
 from fullpose.verify import payload_attitudes
-from fullpose_server.formats.plan_folder import make_plan, write_plan
+from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan, write_plan
 from fullpose_server.runtime.contract.messages import Reply
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.lease import LeaseToken
@@ -26,19 +26,8 @@ def write_swing(folder: Path, rig: Rig, seconds: float, rate_hz: float = 1000.0)
     phase = np.cumsum(share**3 * (10.0 - 15.0 * share + 6.0 * share**2)) / rate_hz
     angles = rig.home + SWING * np.sin(2.0 * np.pi * HERTZ * phase[:, None])
     lead = round(rate_hz) + 1
-    plan = make_plan(
-        plan_id="bench",
-        rig=rig,
-        rate_hz=rate_hz,
-        angles=angles,
-        target=quaternion_from_dcm(payload_attitudes(rig, angles)),
-        error=np.zeros(n),
-        lead_in_samples=lead,
-        lead_out_samples=lead,
-        trajectory_sha256="0" * 64,
-        method="bench",
-        feasible=True,
-    )
+    path = PlanPath(angles, quaternion_from_dcm(payload_attitudes(rig, angles)), np.zeros(n), lead, lead)
+    plan = make_plan(PlanOrigin("bench", "0" * 64, "bench"), rig, rate_hz, path, feasible=True)
     write_plan(folder, plan)
     return folder
 

@@ -13,7 +13,7 @@ import shutil
 import tempfile
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -53,6 +53,27 @@ class PlanInfo:
 
 
 @dataclass(frozen=True)
+class PlanOrigin:
+    """What a plan is a plan of, and how it was made."""
+
+    plan_id: str
+    trajectory_sha256: str
+    method: str
+    name: str = ""  # of the trajectory, for people
+    start_s: float = 0.0  # the flight's own time at its first sample
+
+
+class PlanPath(NamedTuple):
+    """What is flown, leads included; target and error count in the flight between the leads only."""
+
+    angles: Array  # (n, 4) [rad]
+    target: Array  # (n, 4) w, x, y, z
+    error: Array  # (n,) [rad]
+    lead_in_samples: int  # rows before the flight's first sample
+    lead_out_samples: int  # rows after the flight's last sample
+
+
+@dataclass(frozen=True)
 class PlanFolder:
     """A plan in memory or mapped from its folder. Arrays are read-only."""
 
@@ -81,26 +102,12 @@ def plan_hash(angles: Array, target: Array, error: Array) -> str:
     return digest.hexdigest()
 
 
-def make_plan(
-    *,
-    plan_id: str,
-    rig: Rig,
-    rate_hz: float,
-    angles: Array,
-    target: Array,
-    error: Array,
-    lead_in_samples: int,
-    lead_out_samples: int,
-    trajectory_sha256: str,
-    method: str,
-    feasible: bool,
-    name: str = "",
-    start_s: float = 0.0,
-) -> PlanFolder:
-    """A plan from its arrays (shapes as in `PlanFolder`). Target quaternions are made continuous in sign.
+def make_plan(origin: PlanOrigin, rig: Rig, rate_hz: float, path: PlanPath, *, feasible: bool) -> PlanFolder:
+    """A plan from its arrays (shapes as in `PlanPath`). Target quaternions are made continuous in sign.
 
     Raises ValueError where shapes disagree, a flight's row is not finite, or the leads leave no flight.
     """
+    angles, target, error, lead_in_samples, lead_out_samples = path
     n = len(angles)
     flight = slice(lead_in_samples, n - lead_out_samples)
     if angles.shape != (n, 4) or target.shape != (n, 4) or error.shape != (n,):
@@ -117,20 +124,20 @@ def make_plan(
     for array in (x, q, e):
         array.setflags(write=False)
     info = PlanInfo(
-        plan_id=plan_id,
+        plan_id=origin.plan_id,
         rig=rig.name,
         rig_hash=rig_hash(rig),
         plan_hash=plan_hash(x, q, e),
-        trajectory_sha256=trajectory_sha256,
-        method=method,
+        trajectory_sha256=origin.trajectory_sha256,
+        method=origin.method,
         rate_hz=float(rate_hz),
         samples=n,
         lead_in_samples=lead_in_samples,
         lead_out_samples=lead_out_samples,
         duration_s=(n - lead_in_samples - lead_out_samples - 1) / rate_hz,
         feasible=feasible,
-        name=name,
-        start_s=start_s,
+        name=origin.name,
+        start_s=origin.start_s,
     )
     return PlanFolder(info, x, q, e)
 

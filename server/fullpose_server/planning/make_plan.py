@@ -20,7 +20,7 @@ from fullpose.rig import Rig
 from fullpose.solution import Solution
 from fullpose.solve import solve_flight
 from fullpose.verify import Violation, verify
-from fullpose_server.formats.plan_folder import make_plan, rig_hash, write_plan
+from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan, rig_hash, write_plan
 from fullpose_server.formats.report import make_report, margins_report, verdict_report, why_infeasible
 from fullpose_server.planning.plan_request import PlanRequest
 from fullpose_server.planning.remedy import find_remedy
@@ -167,21 +167,11 @@ def _write(
     inner = slice(leads[0], n - leads[1])
     target, error = np.full((n, 4), math.nan), np.full(n, math.nan)
     target[inner], error[inner] = made.q, solution.error
-    folder = make_plan(
-        plan_id=request.plan_id,
-        rig=solution.rig,
-        rate_hz=request.rate_hz,
-        angles=angles,
-        target=target,
-        error=error,
-        lead_in_samples=leads[0],
-        lead_out_samples=leads[1],
-        trajectory_sha256=request.trajectory_sha256,
-        method=request.method,
-        feasible=refusal is None,
-        name=request.name,
-        start_s=float(flight.time[0]),
+    origin = PlanOrigin(
+        request.plan_id, request.trajectory_sha256, request.method, request.name, start_s=float(flight.time[0])
     )
+    path = PlanPath(angles, target, error, *leads)
+    folder = make_plan(origin, solution.rig, request.rate_hz, path, feasible=refusal is None)
     write_plan(request.folder, folder)
     return {
         "report": report,

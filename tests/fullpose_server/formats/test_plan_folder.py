@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from fullpose.rig import builtin_rigs
-from fullpose_server.formats.plan_folder import PlanFolderError, make_plan, read_plan, rig_hash, write_plan
+from fullpose_server.formats.plan_folder import (
+    PlanFolderError,
+    PlanOrigin,
+    PlanPath,
+    make_plan,
+    read_plan,
+    rig_hash,
+    write_plan,
+)
 from tests.fullpose_server.runtime.rigs import plan_of
 
 RIG = builtin_rigs()["vertical-limited"]
@@ -76,19 +84,8 @@ def test_target_signs_are_made_continuous() -> None:
     lead = plan.info.lead_in_samples
     flipped = np.array(plan.target)
     flipped[lead + 100 : lead + 300] *= -1.0
-    again = make_plan(
-        plan_id="x",
-        rig=RIG,
-        rate_hz=1000.0,
-        angles=plan.angles,
-        target=flipped,
-        error=plan.error,
-        lead_in_samples=lead,
-        lead_out_samples=plan.info.lead_out_samples,
-        trajectory_sha256="",
-        method="",
-        feasible=True,
-    )
+    path = PlanPath(plan.angles, flipped, plan.error, lead, plan.info.lead_out_samples)
+    again = make_plan(PlanOrigin("x", "", ""), RIG, 1000.0, path, feasible=True)
     np.testing.assert_allclose(again.target, plan.target, atol=1e-15)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from fullpose.attitude import quaternion_from_dcm
 from fullpose.kinematics import payload_attitudes
 from fullpose.rig import Rig, builtin_rigs
-from fullpose_server.formats.plan_folder import PlanFolder, make_plan, write_plan
+from fullpose_server.formats.plan_folder import PlanFolder, PlanOrigin, PlanPath, make_plan, write_plan
 from fullpose_server.operating import GuardConfig, Tolerance
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.messages import Reply, Snapshot
@@ -40,19 +40,8 @@ def plan_of(
         angles[:, 0] = 0.0
     F = np.empty((len(angles), 3, 3))
     payload_attitudes(rig.axes, angles, F)
-    return make_plan(
-        plan_id=plan_id,
-        rig=rig,
-        rate_hz=rate_hz,
-        angles=angles,
-        target=quaternion_from_dcm(F),
-        error=np.zeros(len(angles)),
-        lead_in_samples=ramp + 1,
-        lead_out_samples=ramp + 1,
-        trajectory_sha256="0" * 64,
-        method="test",
-        feasible=True,
-    )
+    path = PlanPath(angles, quaternion_from_dcm(F), np.zeros(len(angles)), ramp + 1, ramp + 1)
+    return make_plan(PlanOrigin(plan_id, "0" * 64, "test"), rig, rate_hz, path, feasible=True)
 
 
 class Operator:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from fullpose_server.formats.plan_folder import make_plan
+from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.live.buffer import LiveBuffer
 from fullpose_server.runtime.live.packets import LiveSample
@@ -32,19 +32,8 @@ def _path(config: RigConfig) -> None:
     n = 8
     angles = np.tile(rig.home, (n, 1))
     target = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
-    plan = make_plan(
-        plan_id="prewarm",
-        rig=rig,
-        rate_hz=config.rate_hz,
-        angles=angles,
-        target=target,
-        error=np.zeros(n),
-        lead_in_samples=1,
-        lead_out_samples=1,
-        trajectory_sha256="",
-        method="",
-        feasible=True,
-    )
+    path = PlanPath(angles, target, np.zeros(n), lead_in_samples=1, lead_out_samples=1)
+    plan = make_plan(PlanOrigin("prewarm", "", ""), rig, config.rate_hz, path, feasible=True)
     motion = Motion(rig, config.motion, config.rate_hz)
     guard = Guard(rig, config.guard, 1.0 / config.rate_hz)
     motion.rest_at(rig.home)
