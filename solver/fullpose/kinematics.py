@@ -108,7 +108,7 @@ def four_axis_pose(horizontal: bool, d: Array, F: Array, J: Array, n: Array) -> 
     s3 = math.sin(d[2])
     c4 = math.cos(d[3])
     s4 = math.sin(d[3])
-    volume = self_motion(horizontal, d, n)
+    manipulability = self_motion(horizontal, d, n)
     y, z, side = (2, 1, -1.0) if horizontal else (1, 2, 1.0)
     s2 *= side
     J[0, 0] = c3 * s2
@@ -137,7 +137,7 @@ def four_axis_pose(horizontal: bool, d: Array, F: Array, J: Array, n: Array) -> 
     F[0, z] = -side * (c1 * s3 + s1 * a0)
     F[y, z] = side * (c1 * (s4 * c3) - s1 * ay)
     F[z, z] = c1 * (c4 * c3) - side * (s1 * az)
-    return volume
+    return manipulability
 
 
 @kernel

@@ -69,13 +69,13 @@ def solve_flight(
         made = row.plans(t, C, rig, near, own, progress, clock)
         return Solved(made.solution, made)
     begin = clock() if clock else np.nan
-    flown = _stepped(row.begins(rig, own, near, t, C), t, C, clock, progress)
+    flown = _sampled(row.begins(rig, own, near, t, C), t, C, clock, progress)
     solve_time = clock() - begin if clock else np.nan
     return Solved(_solution(method, rig, t, C, flown, solve_time))
 
 
 @dataclass(frozen=True)
-class _Stepped:
+class _Samples:
     """What a stepper did, sample by sample: angles (n, 4) [rad], codes, iterations and [s] a step (n,)."""
 
     angles: Array
@@ -84,11 +84,11 @@ class _Stepped:
     step_time: Array
 
 
-def _stepped(
+def _sampled(
     stepper: Stepper, time: Array, attitude: Array, clock: Clock | None, progress: Progress | None
-) -> _Stepped:
+) -> _Samples:
     n = len(time)
-    out = _Stepped(np.empty((n, 4)), np.empty(n, np.int16), np.empty(n, np.int32), np.full(n, np.nan))
+    out = _Samples(np.empty((n, 4)), np.empty(n, np.int16), np.empty(n, np.int32), np.full(n, np.nan))
     for k in range(0, n, BLOCK):
         block = slice(k, min(k + BLOCK, n))
         before = clock() if clock else np.nan
@@ -101,7 +101,7 @@ def _stepped(
     return out
 
 
-def _solution(method: str, rig: Rig, time: Array, attitude: Array, flown: _Stepped, solve_time: float) -> Solution:
+def _solution(method: str, rig: Rig, time: Array, attitude: Array, flown: _Samples, solve_time: float) -> Solution:
     error, matrix_error = attitude_errors(payload_attitudes(rig, flown.angles), attitude)
     solution = Solution(
         method, rig, time, flown.angles, error, matrix_error, flown.limited, flown.iterations, flown.step_time,

@@ -25,11 +25,11 @@ ACTIVE_SETS = 81  # each of four frames free, at its lower or at its upper bound
 
 
 @inlined
-def squared_damping(volume: float) -> float:
+def squared_damping(manipulability: float) -> float:
     """s^2 of the damped inverse, from sqrt(det J J^T): zero but next to the singularity."""
-    if volume >= DAMPED_BELOW:
+    if manipulability >= DAMPED_BELOW:
         return 0.0
-    ratio = volume / DAMPED_BELOW
+    ratio = manipulability / DAMPED_BELOW
     return MAX_DAMPING * MAX_DAMPING * (1.0 - ratio * ratio)
 
 
@@ -245,7 +245,7 @@ def box_least_squares(J: Array, e: Array, damping: Array, g: Array, lo: Array, h
 def quadratic_step(
     J: Array,
     n: Array,
-    volume: float,
+    manipulability: float,
     weight: Array,
     d: Array,
     g: Array,
@@ -257,9 +257,9 @@ def quadratic_step(
 ) -> bool:
     """x <- the programme's solution; false where no x satisfies it, x being then the one that shares the excess.
 
-    J (3, 4) at d, n its unit null vector (4,), volume = sqrt(det J J^T), e (3,); the others (4,).
+    J (3, 4) at d, n its unit null vector (4,), manipulability = sqrt(det J J^T), e (3,); the others (4,).
     """
-    least_norm(J, weight, g, e, squared_damping(volume), x)
+    least_norm(J, weight, g, e, squared_damping(manipulability), x)
     for i in range(4):
         x[i] += d[i]
     # z = 0 is the least weighted distance from d + g along the line.

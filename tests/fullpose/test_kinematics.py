@@ -88,10 +88,10 @@ def test_jacobian_against_finite_differences(name: str, d: NDArray[np.float64]) 
 def test_null_vector(name: str, d: NDArray[np.float64]) -> None:
     J = jacobian_of(RIGS[name], d)
     n = np.empty(4)
-    volume = null_vector(J, n)
+    manipulability = null_vector(J, n)
     assert np.abs(J @ n).max() <= 1e-14
-    np.testing.assert_allclose(volume**2, np.linalg.det(J @ J.T), atol=1e-13)
-    if volume > 0.0:
+    np.testing.assert_allclose(manipulability**2, np.linalg.det(J @ J.T), atol=1e-13)
+    if manipulability > 0.0:
         np.testing.assert_allclose(np.linalg.norm(n), 1.0, atol=1e-14)
 
 
@@ -100,14 +100,14 @@ def test_null_vector(name: str, d: NDArray[np.float64]) -> None:
 def test_the_closed_forms_are_the_products_multiplied_out(name: str, d: NDArray[np.float64]) -> None:
     rig = RIGS[name]
     F, J, n, along = np.empty((3, 3)), np.empty((3, 4)), np.empty(4), np.empty(4)
-    volume = four_axis_pose(rig.geometry.horizontal, d, F, J, n)
+    manipulability = four_axis_pose(rig.geometry.horizontal, d, F, J, n)
     np.testing.assert_allclose(F, attitude_of(rig, d), rtol=0.0, atol=1e-15)
     np.testing.assert_allclose(J, jacobian_of(rig, d), rtol=0.0, atol=1e-15)
-    assert volume == pytest.approx(null_vector(J, along), abs=1e-15)
-    if volume > 0.0:
+    assert manipulability == pytest.approx(null_vector(J, along), abs=1e-15)
+    if manipulability > 0.0:
         np.testing.assert_allclose(np.linalg.norm(n), 1.0, atol=1e-14)
-        assert np.abs(J @ n).max() * volume <= 1e-15  # the direction is lost where the volume is
-    assert self_motion(rig.geometry.horizontal, d, along) == volume
+        assert np.abs(J @ n).max() * manipulability <= 1e-15  # the direction is lost where the manipulability is
+    assert self_motion(rig.geometry.horizontal, d, along) == manipulability
     np.testing.assert_array_equal(along, n)
 
 

@@ -1,5 +1,7 @@
 """Resampling to the rig's rate."""
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -45,7 +47,7 @@ def test_body_rate_is_the_derivative_of_the_attitude() -> None:
 def test_long_flights_take_several_windows(monkeypatch: pytest.MonkeyPatch) -> None:
     time, q = random_flight(4, 6.0, 100.0, 1.0)
     whole = resample(time, q, 1000.0)
-    monkeypatch.setattr("fullpose.resample._WINDOW", 150)
+    monkeypatch.setattr(import_module("fullpose.resample"), "_WINDOW", 150)
     parts = resample(time, q, 1000.0)
     assert geodesic(whole.q, parts.q).max() < 1e-12
     np.testing.assert_allclose(whole.body_rate, parts.body_rate, atol=1e-10)

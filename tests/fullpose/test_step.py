@@ -39,27 +39,27 @@ def reference_step(J: Array, weight: Array, g: Array, e: Array, lo: Array, hi: A
 
 
 def problem(seed: int, width: float) -> tuple[Array, Array, float, Array, Array, Array, Array, Array]:
-    """J, n, volume, weight, g, e, lo, hi of a random pose; the box is `width` times as wide as the increment."""
+    """J, n, manipulability, weight, g, e, lo, hi of a random pose; the box is `width` times the increment."""
     random = np.random.default_rng(seed)
     rig = RIGS[("vertical-4", "horizontal-4")[seed % 2]]
     d = random.uniform(-np.pi, np.pi, 4)
     J, n = np.empty((3, 4)), np.empty(4)
     jacobian(rig.axes, d, J)
-    volume = null_vector(J, n)
+    manipulability = null_vector(J, n)
     e = random.normal(size=3) * 1e-3
     middle = random.normal(size=4) * 3e-4
     half = width * 1e-3 * random.uniform(0.2, 1.0, 4)
     weight = np.exp(random.normal(size=4))
-    return J, n, volume, weight, random.normal(size=4) * 2e-4, e, middle - half, middle + half
+    return J, n, manipulability, weight, random.normal(size=4) * 2e-4, e, middle - half, middle + half
 
 
 @settings(max_examples=300)
 @given(seed=SEED, width=st.sampled_from([0.5, 1.0, 2.0, 4.0, 100.0]))
 def test_the_step_is_the_programmes_solution(seed: int, width: float) -> None:
-    J, n, volume, weight, g, e, lo, hi = problem(seed, width)
-    assume(volume > 0.05)
+    J, n, manipulability, weight, g, e, lo, hi = problem(seed, width)
+    assume(manipulability > 0.05)
     x = np.empty(4)
-    feasible = quadratic_step(J, n, volume, weight, np.zeros(4), g, e, lo, hi, np.zeros(4), x)
+    feasible = quadratic_step(J, n, manipulability, weight, np.zeros(4), g, e, lo, hi, np.zeros(4), x)
     status, expected = reference_step(J, weight, g, e, lo, hi)
     if feasible:
         assert status == "PIQP_SOLVED"
@@ -74,8 +74,10 @@ def test_the_step_is_the_programmes_solution(seed: int, width: float) -> None:
 def test_both_outcomes_are_met_by_the_problems_above() -> None:
     outcomes = []
     for seed in range(200):
-        J, n, volume, weight, g, e, lo, hi = problem(seed, 1.0)
-        outcomes.append(quadratic_step(J, n, volume, weight, np.zeros(4), g, e, lo, hi, np.zeros(4), np.empty(4)))
+        J, n, manipulability, weight, g, e, lo, hi = problem(seed, 1.0)
+        outcomes.append(
+            quadratic_step(J, n, manipulability, weight, np.zeros(4), g, e, lo, hi, np.zeros(4), np.empty(4))
+        )
     assert 20 < sum(outcomes) < 180
 
 
@@ -111,8 +113,8 @@ def test_box_least_squares_without_bounds_and_with_no_room() -> None:
 
 def test_least_norm_is_the_weighted_pseudo_inverse() -> None:
     for seed in range(50):
-        J, _, volume, weight, g, e, _, _ = problem(seed, 1.0)
-        if volume < 0.01:
+        J, _, manipulability, weight, g, e, _, _ = problem(seed, 1.0)
+        if manipulability < 0.01:
             continue
         p = np.empty(4)
         least_norm(J, weight, g, e, 0.0, p)

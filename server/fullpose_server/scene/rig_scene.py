@@ -67,9 +67,9 @@ class RigScene:
         self._previewed: tuple[Array, Array | None] | None = None
         with self._server.atomic():
             self._stage()
-            self._measured = self._chain("/machine")
-            self._commanded = self._chain("/commanded", palette.GHOST, 0.35)
-            self._preview = self._chain("/preview", palette.PREVIEW, 0.35)
+            self._measured = self._nested_frames("/machine")
+            self._commanded = self._nested_frames("/commanded", palette.GHOST, 0.35)
+            self._preview = self._nested_frames("/preview", palette.PREVIEW, 0.35)
             self._triads()
         self.show(Pose(rig.home, None, None))
 
@@ -166,7 +166,7 @@ class RigScene:
         camera.near = 0.02 * reach
         camera.far = 100.0 * reach
 
-    def _chain(self, root: str, ghost: str | None = None, opacity: float = 1.0) -> list[viser.FrameHandle]:
+    def _nested_frames(self, root: str, ghost: str | None = None, opacity: float = 1.0) -> list[viser.FrameHandle]:
         """The nested frames under `root`, outside in; as a ghost: main parts only, in one colour."""
         scene = self._server.scene
         top = scene.add_frame(root, show_axes=False, visible=ghost is None)

@@ -34,6 +34,7 @@ from fullpose.methods.state import (
     FRESH,
     GUESS,
     HI,
+    INCREMENT,
     LO,
     NULL,
     PHASE,
@@ -42,16 +43,15 @@ from fullpose.methods.state import (
     SHIFT,
     STEP,
     TOLERANCE,
-    WISH,
     advance,
     binding_code,
     finish,
     goal_from,
+    hold_position,
     new_state,
+    null_space_increment,
     outermost_code,
     prepare,
-    stand,
-    wish,
 )
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
@@ -208,14 +208,16 @@ def reaches(J: Array, s: Array, e: Array, residual: float) -> bool:
 
 
 @inner
-def possible(J: Array, volume: float, weight: Array, nowhere: Array, e: Array, work: Array, residual: float) -> bool:
+def possible(
+    J: Array, manipulability: float, weight: Array, nowhere: Array, e: Array, work: Array, residual: float
+) -> bool:
     """Whether a step inside the box makes the increment e (3,) [rad], by the closed form; work[POSE] is filled.
 
     `nowhere`: zeros (4,), for work[LO] and work[HI] are bounds of the step; residual as in `reaches`.
     """
     step = work[POSE]
     return quadratic_step(
-        J, work[NULL], volume, weight, nowhere, work[WISH], e, work[LO], work[HI], work[TOLERANCE], step
+        J, work[NULL], manipulability, weight, nowhere, work[INCREMENT], e, work[LO], work[HI], work[TOLERANCE], step
     ) and reaches(J, step, e, residual)
 
 
@@ -270,8 +272,8 @@ def alm_block(
         else:
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
-            wish(table, d, h, gains, work[WISH])
-            volume = four_axis_pose(horizontal, d, F, J, work[NULL])
+            null_space_increment(table, d, h, gains, work[INCREMENT])
+            manipulability = four_axis_pose(horizontal, d, F, J, work[NULL])
             if mode != OPEN_LOOP:
                 on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
             else:
@@ -280,18 +282,18 @@ def alm_block(
             for i in range(4):
                 work[LO, i] -= d[i]
                 work[HI, i] -= d[i]
-            count = multiplier_step(J, table[WEIGHT], work[WISH], e, work[LO], work[HI], tuning, room, work[STEP])
+            count = multiplier_step(J, table[WEIGHT], work[INCREMENT], e, work[LO], work[HI], tuning, room, work[STEP])
             iterations[k] = abs(count)
             code = EXACT
             # Not settled: at the cap, or because no step inside the box has this increment.
             if (
                 count < 0
                 and mode != EXACT_CURVE
-                and not possible(J, volume, table[WEIGHT], nowhere, e, work, tuning[3])
+                and not possible(J, manipulability, table[WEIGHT], nowhere, e, work, tuning[3])
             ):
                 for i in range(4):
-                    work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
-                binding = box_least_squares(J, e, work[DAMPING], work[WISH], work[LO], work[HI], work[STEP], A)
+                    work[DAMPING, i] = (SHIFT + squared_damping(manipulability)) * table[WEIGHT, i]
+                binding = box_least_squares(J, e, work[DAMPING], work[INCREMENT], work[LO], work[HI], work[STEP], A)
                 code = binding_code(binding, lo_code, hi_code)
                 if code == EXACT and not reaches(J, work[STEP], e, tuning[3]):
                     code = outermost_code(work[STEP], work[LO], work[HI], lo_code, hi_code)
@@ -332,7 +334,7 @@ class AlmStepper:
 
     def begin_at_rest(self, dt: float) -> None:
         """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
-        stand(self._state, dt)
+        hold_position(self._state, dt)
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""

@@ -34,18 +34,18 @@ from fullpose.methods.state import (
     FRESH,
     GUESS,
     HI,
+    INCREMENT,
     LO,
     PHASE,
     POSE,
     ROWS,
-    WISH,
     advance,
     binding_code,
     goal,
+    hold_position,
     new_state,
     prepare,
     settle,
-    stand,
 )
 from fullpose.methods.unlimited import require_fourth_axis
 from fullpose.options import Options, ranged
@@ -120,7 +120,7 @@ def free_step(J: Array, weight: Array, free: NDArray[np.bool_], e: Array, dampin
 @kernel
 def clamped_step(
     J: Array,
-    volume: float,
+    manipulability: float,
     minors: Array,
     weight: Array,
     e: Array,
@@ -132,13 +132,13 @@ def clamped_step(
 ) -> int:
     """p <- the step in [lo, hi] by locking the frame that leaves by most; returns the first bound locked, or 0.
 
-    A bound is 1 + 2 frame + (1 at the upper one). volume: of J, from `null_vector`; minors (4,): of the three frames
+    A bound is 1 + 2 frame + (1 at the upper one). manipulability: of J; minors (4,): of the three frames
     left without each, or infinite where their step is not to be damped. lo, hi, p (4,) are of the step; free (4,) and
     A (3, 4) are filled.
     """
     r = np.empty(3)
     first = 0
-    damping = squared_damping(volume)
+    damping = squared_damping(manipulability)
     for i in range(4):
         free[i] = True
     locked = 0
@@ -163,7 +163,7 @@ def clamped_step(
         p[out] = hi[out] if upper else lo[out]
         free[out] = False
         locked += 1
-        damping = squared_damping(min(volume, minors[out]))
+        damping = squared_damping(min(manipulability, minors[out]))
         if first == 0:
             first = 1 + 2 * out + (1 if upper else 0)
         if locked == 4:
@@ -182,14 +182,14 @@ def longest_of(p: Array) -> float:
 @kernel
 def at_pole(J: Array, n: Array, free: NDArray[np.bool_]) -> bool:
     """Whether three frames are free and next to their own pole. J (3, 4), n (4,) <- its null vector, free (4,)."""
-    volume = null_vector(J, n)
+    manipulability = null_vector(J, n)
     locked = -1
     for i in range(4):
         if not free[i]:
             if locked >= 0:
                 return False
             locked = i
-    return locked >= 0 and volume * abs(n[locked]) < DAMPED_BELOW
+    return locked >= 0 and manipulability * abs(n[locked]) < DAMPED_BELOW
 
 
 @kernel
@@ -244,14 +244,14 @@ def clamped_block(
                 for i in range(4):
                     lo[i] = work[LO, i] - x[i]
                     hi[i] = work[HI, i] - x[i]
-                volume = null_vector(J, n)
-                now = clamped_step(J, volume, undamped, table[WEIGHT], e, lo, hi, free, A, p)
+                manipulability = null_vector(J, n)
+                now = clamped_step(J, manipulability, undamped, table[WEIGHT], e, lo, hi, free, A, p)
                 longest = longest_of(p)
                 if longest > LONGEST:
                     # Next to the pole of the frames left, which without rate limits nothing else keeps short.
                     for i in range(4):
-                        n[i] = volume * abs(n[i])
-                    now = clamped_step(J, volume, n, table[WEIGHT], e, lo, hi, free, A, p)
+                        n[i] = manipulability * abs(n[i])
+                    now = clamped_step(J, manipulability, n, table[WEIGHT], e, lo, hi, free, A, p)
                     longest = longest_of(p)
                 if bound == 0:
                     bound = now
@@ -263,7 +263,7 @@ def clamped_block(
             if rotation_error(G, F, e) > held and at_pole(J, n, free):
                 for i in range(4):
                     work[GUESS, i] = x[i]
-                    work[WISH, i] = 0.0
+                    work[INCREMENT, i] = 0.0
                 if settle(horizontal, table[WEIGHT], state[0:4], G, work) > 0:
                     for i in range(4):
                         x[i] = work[POSE, i]
@@ -291,7 +291,7 @@ class ClampedStepper:
 
     def begin_at_rest(self, dt: float) -> None:
         """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
-        stand(self._state, dt)
+        hold_position(self._state, dt)
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""

@@ -17,20 +17,20 @@ from fullpose.methods.state import (
     FRESH,
     GUESS,
     HI,
+    INCREMENT,
     LO,
     NULL,
     PHASE,
     POSE,
     ROWS,
     TOLERANCE,
-    WISH,
     advance,
     finish,
     goal_from,
+    hold_position,
     new_state,
+    null_space_increment,
     prepare,
-    stand,
-    wish,
 )
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
@@ -92,11 +92,21 @@ def exact_block(
         else:
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
-            wish(table, d, h, gains, work[WISH])
-            volume = four_axis_pose(horizontal, d, F, J, work[NULL])
+            null_space_increment(table, d, h, gains, work[INCREMENT])
+            manipulability = four_axis_pose(horizontal, d, F, J, work[NULL])
             on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
             quadratic_step(
-                J, work[NULL], volume, table[WEIGHT], d, work[WISH], e, work[LO], work[HI], work[TOLERANCE], work[GUESS]
+                J,
+                work[NULL],
+                manipulability,
+                table[WEIGHT],
+                d,
+                work[INCREMENT],
+                e,
+                work[LO],
+                work[HI],
+                work[TOLERANCE],
+                work[GUESS],
             )
             iterations[k], code = finish(
                 horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code
@@ -121,7 +131,7 @@ class ExactStepper:
 
     def begin_at_rest(self, dt: float) -> None:
         """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
-        stand(self._state, dt)
+        hold_position(self._state, dt)
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""

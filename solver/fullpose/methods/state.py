@@ -38,7 +38,7 @@ STATE = 12
 FRESH, PLACED, MOVING = 0.0, 1.0, 2.0  # no sample yet; a pose but no rate; both
 
 # Rows of the work array of one sample, (ROWS, 4)
-LO, HI, TOLERANCE, WISH, GUESS, POSE, NULL, STEP, DAMPING = range(9)
+LO, HI, TOLERANCE, INCREMENT, GUESS, POSE, NULL, STEP, DAMPING = range(9)
 ROWS = 9
 
 SLIDES = 8  # along the curve to the box; two or three do it, unless there is no way
@@ -47,7 +47,7 @@ SHIFT = 1e-7  # damping of the least squares relative to the Jacobian's squares:
 
 
 @inlined
-def wish(table: Array, d: Array, h: float, gains: Array, out: Array) -> None:
+def null_space_increment(table: Array, d: Array, h: float, gains: Array, out: Array) -> None:
     """out <- the increment the frames would make of their own over `h` [rad], by the first three gains.
 
     avoidance [rad/s]: away from the singularity, the gradient of 1/2 log (m + 0.1), m = sin^2 d2 + cos^2 d3.
@@ -167,7 +167,7 @@ def settle(horizontal: bool, weight: Array, d: Array, G: Array, work: Array) -> 
         along = 0.0
         norm = 0.0
         for i in range(4):
-            along += n[i] * weight[i] * (d[i] + work[WISH, i] - y[i])
+            along += n[i] * weight[i] * (d[i] + work[INCREMENT, i] - y[i])
             norm += n[i] * weight[i] * n[i]
         z_min, z_max = null_interval(y, n, lo, hi, work[TOLERANCE])
         z = clamp(along / norm if norm > 0.0 else 0.0, z_min, z_max)
@@ -226,20 +226,20 @@ def give_way(
     for i in range(4):
         x[i] = d[i]
     for again in range(2):
-        volume = four_axis_pose(axes[0] == Z, x, F, J, work[NULL])
+        manipulability = four_axis_pose(axes[0] == Z, x, F, J, work[NULL])
         rotation_error(G, F, e)
         for i in range(4):
-            work[DAMPING, i] = (SHIFT + squared_damping(volume)) * table[WEIGHT, i]
+            work[DAMPING, i] = (SHIFT + squared_damping(manipulability)) * table[WEIGHT, i]
             work[LO, i] -= x[i]
             work[HI, i] -= x[i]
-            work[WISH, i] += d[i] - x[i]
-        now = box_least_squares(J, e, work[DAMPING], work[WISH], work[LO], work[HI], work[STEP], A)
+            work[INCREMENT, i] += d[i] - x[i]
+        now = box_least_squares(J, e, work[DAMPING], work[INCREMENT], work[LO], work[HI], work[STEP], A)
         if now > 0 or again == 0:
             binding = now
         for i in range(4):
             work[LO, i] += x[i]
             work[HI, i] += x[i]
-            work[WISH, i] += x[i] - d[i]
+            work[INCREMENT, i] += x[i] - d[i]
             x[i] = min(max(x[i] + work[STEP, i], work[LO, i]), work[HI, i])
     return binding_code(binding, lo_code, hi_code)
 
@@ -316,7 +316,7 @@ def new_state(pose: Array, code: int) -> Array:
     return state
 
 
-def stand(state: Array, dt: float) -> None:
+def hold_position(state: Array, dt: float) -> None:
     """The flight stands at its pose since `dt` [s] before time 0: the rate of its first sample is no longer free."""
     state[4:8] = 0.0
     state[PAST] = dt

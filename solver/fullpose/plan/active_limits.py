@@ -16,7 +16,7 @@ TURNED = 1e-4  # [rad] a frame is turned by to see which way the attitude error 
 KINDS = 3  # limits a frame
 
 
-def limit_marks(
+def active_limits(
     time: Array, attitude: Array, angles: Array, rig: Rig, missed: NDArray[np.bool_]
 ) -> Codes:  # fmt: skip
     """`limited_code` (n,) of the samples `missed` (n,), `EXACT` elsewhere: only limits that the rig has.
@@ -25,23 +25,23 @@ def limit_marks(
     nearest in time: the frame whose motion would take most of the attitude error away, a stop only where the frame
     would have to go beyond it; of one frame's, position before rate before acceleration.
     """
-    marks = np.full(len(time), EXACT, np.int16)
+    codes = np.full(len(time), EXACT, np.int16)
     lost = np.flatnonzero(missed)
     if not lost.size:
-        return marks
+        return codes
     active = _active(time, angles, rig)
     nearest = _nearest(np.flatnonzero(active.any(axis=(1, 2))), lost)
     for begin in range(0, lost.size, CHUNK):
         part = slice(begin, begin + CHUNK)
         at, held = lost[part], nearest[part]
-        wish = _wish(attitude[at], angles[at], rig)
-        gain = np.repeat(np.abs(wish)[:, :, None], KINDS, axis=2)
+        descent = _descent(attitude[at], angles[at], rig)
+        gain = np.repeat(np.abs(descent)[:, :, None], KINDS, axis=2)
         upper = rig.position_max - angles[held] < angles[held] - rig.position_min
-        gain[:, :, 0] = np.maximum(0.0, np.where(upper, wish, -wish))
+        gain[:, :, 0] = np.maximum(0.0, np.where(upper, descent, -descent))
         gain[~active[held]] = -1.0
         best = np.argmax(gain.reshape(len(at), -1), axis=1)
-        marks[at] = limited_code(0, 0) + best
-    return marks
+        codes[at] = limited_code(0, 0) + best
+    return codes
 
 
 def _active(time: Array, angles: Array, rig: Rig) -> NDArray[np.bool_]:
@@ -95,13 +95,13 @@ def _nearest(places: Integers, samples: Integers) -> Integers:
     return places[np.where(nearer, left, right)]
 
 
-def _wish(attitude: Array, angles: Array, rig: Rig) -> Array:
+def _descent(attitude: Array, angles: Array, rig: Rig) -> Array:
     """How fast the attitude error falls with each frame's angle (n, 4)."""
-    wish = np.zeros_like(angles)
+    descent = np.zeros_like(angles)
     for i in rig.geometry.frames:
         turn = np.zeros(4)
         turn[i] = TURNED
         for side in (1.0, -1.0):
             error, _ = attitude_errors(payload_attitudes(rig, angles + side * turn), attitude)
-            wish[:, i] -= side * error / (2.0 * TURNED)
-    return wish
+            descent[:, i] -= side * error / (2.0 * TURNED)
+    return descent

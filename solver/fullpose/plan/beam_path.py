@@ -1,6 +1,6 @@
-"""Chains that know the accelerations: the beam search over a whole flight, piece by piece.
+"""Node paths that know the accelerations: the beam search over a whole flight, piece by piece.
 
-The dynamic programme knows rates only. Where each frame needs most of its acceleration, its cheapest chain asks for
+The dynamic programme knows rates only. Where each frame needs most of its acceleration, its cheapest node path asks for
 turns that the frames are too heavy for, and the refinement, which is local, stays caught between them. This search
 decides the way and the inertia together; it is wide but not complete, so it proves nothing.
 """
@@ -49,7 +49,7 @@ class Breadth:
 BREADTHS = (Breadth(1000, 5, 1.0), Breadth(4000, 9, 0.1), Breadth(4000, 9, 1.0))
 
 
-def inertial_chain(
+def beam_path(
     time: Array, attitude: Array, rig: Rig, options: PlanOptions, breadth: Breadth, first: Array, first_rate: Array,
     past: float, progress: Progress | None = None,
 ) -> Array:  # fmt: skip
@@ -64,7 +64,7 @@ def inertial_chain(
     weights[SINGULARITY], weights[RANGES], weights[EXCESS] = SINGULARITY_COST, RANGE_COST, EXCESS_COST
     weights[HOMING] = options.home_cost
     table = limit_table(rig)
-    chain = np.empty((n, 4))
+    node_path = np.empty((n, 4))
     begin = 0
     while True:
         left = time[-1] - time[begin]
@@ -76,14 +76,14 @@ def inertial_chain(
             rig.geometry.horizontal, table, weights, time[begin:end], attitude[begin:end], np.ones(end - begin), past,
             first, first_rate, breadth.slides, breadth.beam, piece,
         )  # fmt: skip
-        chain[begin : following + 1] = piece[: following + 1 - begin]
+        node_path[begin : following + 1] = piece[: following + 1 - begin]
         if progress is not None:
             progress(following + 1, n)
         if end == n:
-            return chain
+            return node_path
         past = float(time[following] - time[following - 1])
-        first = chain[following : following + 1].copy()
-        first_rate = (chain[following : following + 1] - chain[following - 1 : following]) / past
+        first = node_path[following : following + 1].copy()
+        first_rate = (node_path[following : following + 1] - node_path[following - 1 : following]) / past
         begin = following
 
 

@@ -15,7 +15,7 @@ EXACT_ERROR = 1e-12  # [rad] of attitude error above which a sample is not exact
 FORESEEN = 600.0  # [s] of a flight that they are tried for: they take a tenth of its length
 
 
-class Stepped:
+class Fallback:
     """Such paths of one flight on a four-axis rig, (n, 4) [rad] each: made when they are asked for, and kept.
 
     time (n,) [s], attitude (n, 3, 3); start (4,) [rad] exact, or None. Nothing here changes a path once it is made.

@@ -15,8 +15,8 @@ from fullpose._jit import kernel
 from fullpose._typing import Array, Codes, Flags
 from fullpose.limits import ACCELERATION, MAX, MIN, approach_rate, limit_box, limit_table
 from fullpose.methods.start_pose import start_pose
-from fullpose.plan.active_limits import limit_marks
-from fullpose.plan.fallback import EXACT_ERROR, Stepped
+from fullpose.plan.active_limits import active_limits
+from fullpose.plan.fallback import EXACT_ERROR, Fallback
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.trajectory.bspline import WIDTH, Basis, spline_basis
@@ -48,7 +48,7 @@ class BestEffort:
 
 def least_error(
     time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None = None,
-    stepped: Stepped | None = None,
+    fallback: Fallback | None = None,
 ) -> BestEffort:  # fmt: skip
     """Bring the exact path angles (n, 4) [rad] inside the limits, giving up the attitude where that cannot be helped.
 
@@ -67,7 +67,7 @@ def least_error(
     stretches = _merged([_Stretch(int(k), int(k) + 1, PADDING) for k in bad], time)
 
     def again() -> BestEffort:  # what cannot be mended place by place
-        return afresh(time, attitude, angles, rig, options, start, stepped)
+        return afresh(time, attitude, angles, rig, options, start, fallback)
 
     freed: dict[tuple[int, int], tuple[Array, NDArray[np.bool_], float]] = {}
     while True:
@@ -95,29 +95,29 @@ def least_error(
         part = slice(*stretch.range(time))
         x[part], missed[part], _ = freed[part.start, part.stop]
     excess = worst(time, x, limits)[0]
-    return BestEffort(x, limit_marks(time, attitude, x, rig, missed), excess) if excess <= MET else again()
+    return BestEffort(x, active_limits(time, attitude, x, rig, missed), excess) if excess <= MET else again()
 
 
 def afresh(
     time: Array, attitude: Array, angles: Array, rig: Rig, options: PlanOptions, start: Array | None,
-    stepped: Stepped | None = None,
+    fallback: Fallback | None = None,
 ) -> BestEffort:  # fmt: skip
     """The least error that is found without a path near the limits to begin from; `angles` as `feasible` wants them."""
-    return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start, stepped), rig, options, start)
+    return from_feasible(time, attitude, feasible(time, attitude, angles, rig, start, fallback), rig, options, start)
 
 
 def feasible(
-    time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None, stepped: Stepped | None = None
+    time: Array, attitude: Array, angles: Array, rig: Rig, start: Array | None, fallback: Fallback | None = None
 ) -> Array:
     """A path (n, 4) [rad] inside every limit, whatever its attitude error.
 
-    A four-axis rig's is the closest of `stepped`; a three-axis rig's follows `angles` frame by frame.
+    A four-axis rig's is the closest of `fallback`; a three-axis rig's follows `angles` frame by frame.
     """
     if not rig.geometry.redundant:
         x = np.empty_like(angles)
         follow(limit_table(rig), time, angles, x)
         return x
-    return (stepped or Stepped(time, attitude, rig, start)).closest()
+    return (fallback or Fallback(time, attitude, rig, start)).closest()
 
 
 def from_feasible(
@@ -149,7 +149,7 @@ def from_feasible(
             x[part] = before
         else:
             error[part] = after
-    return BestEffort(x, limit_marks(time, attitude, x, rig, error > EXACT_ERROR), worst(time, x, limits)[0])
+    return BestEffort(x, active_limits(time, attitude, x, rig, error > EXACT_ERROR), worst(time, x, limits)[0])
 
 
 @kernel
@@ -168,8 +168,8 @@ def follow(table: Array, time: Array, target: Array, x: Array) -> None:
         for i in range(4):
             gap = target[k - 1, i] - x[k - 1, i]
             speed = approach_rate(abs(gap), 0.5 * table[ACCELERATION, i], h)
-            wish = target[k, i] - target[k - 1, i] + (speed if gap > 0.0 else -speed) * h
-            x[k, i] = min(max(x[k - 1, i] + wish, lo[i]), hi[i])
+            wanted = target[k, i] - target[k - 1, i] + (speed if gap > 0.0 else -speed) * h
+            x[k, i] = min(max(x[k - 1, i] + wanted, lo[i]), hi[i])
             v[i] = (x[k, i] - x[k - 1, i]) / h
         past = h
 

@@ -24,11 +24,11 @@ from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.sqp import MET, RATE_MET
 from fullpose.trajectory.windows import Path, overrun
 
-STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a chain
+STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a node path
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
 STILL = 1e-14  # range of an entry of C up to which an attitude counts as constant: what rounding leaves
 STEPS_AFTER = 2  # attempts, before the step method is asked: it is quick, and what it flies need not be searched for
-EXCESS = 100.0  # cost of going over a rate limit by its whole, for a flight without a chain
+EXCESS = 100.0  # cost of going over a rate limit by its whole, for a flight without a node path
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Plan:
     margins: Margins
     lead_in: Array
     lead_out: Array
-    chains: int  # how many chains were refined
+    node_paths: int  # how many node paths were refined
     lead_note: str = ""
 
     @property
@@ -85,9 +85,9 @@ def plan(
         at, _ = start_pose(rig, C[0], near)
     if np.ptp(C, axis=0).max() <= STILL and (rate is None or not rate.any()):  # it stands, and one sample says where
         search = Search(t[:1], C[:1], rig, at, None, options, progress)
-        return _finished(t, C, rig, _fly(search).held(len(t)), search.chains, begin, clock)
+        return _finished(t, C, rig, _fly(search).held(len(t)), search.node_paths, begin, clock)
     search = Search(t, C, rig, at, rate if len(t) > 1 else None, options, progress)
-    return _finished(t, C, rig, _fly(search), search.chains, begin, clock)
+    return _finished(t, C, rig, _fly(search), search.node_paths, begin, clock)
 
 
 def check_start_rate(rate: ArrayLike | None, rig: Rig) -> Array | None:
@@ -123,41 +123,43 @@ class _Flown:
 
 
 def _fly(search: Search) -> _Flown:
-    """Chains, refined, until one is inside the limits; else the least error."""
+    """Node paths, refined, until one is inside the limits; else the least error."""
     options, time, rig = search.options, search.time, search.rig
     n = len(time)
     grid = options.grid
     slack = 0.0
     none = np.zeros(n, np.int16)
-    chain = search.chain(grid)
-    if not chain.found:
+    node_path = search.node_path(grid)
+    if not node_path.found:
         grid = options.fine_grid
-        wide = search.chain(grid, slack=grid / OVERLAP)
+        wide = search.node_path(grid, slack=grid / OVERLAP)
         if wide.found:
-            chain = search.chain(grid)
-            if not chain.found:
-                chain, slack = wide, grid / OVERLAP
+            node_path = search.node_path(grid)
+            if not node_path.found:
+                node_path, slack = wide, grid / OVERLAP
         else:
-            chain = wide
-    if not chain.found:
-        blocking = Blocking(float(time[search.samples[chain.reached]]), FRAMES[chain.frame], LIMITS[chain.limit])
+            node_path = wide
+    if not node_path.found:
+        blocking = Blocking(
+            float(time[search.samples[node_path.reached]]), FRAMES[node_path.frame], LIMITS[node_path.limit]
+        )
         decided_by = blocking.limit if blocking.limit != "acceleration" else "start_rate"  # only its inertia closes so
         angles = np.repeat(rig.home[None], n, axis=0)
-        limited = np.full(n, limited_code(chain.frame, chain.limit), np.int16)
+        limited = np.full(n, limited_code(node_path.frame, node_path.limit), np.int16)
         if options.best_effort:
             effort = _least_error(search)
             angles, limited = effort.angles, effort.limited
         return _Flown(angles, np.zeros(n, np.int32), limited, decided_by, blocking, grid)
     best: tuple[float, Path] | None = None
     for attempt in range(options.alternatives + 1):
-        if attempt == STEPS_AFTER and (stepped := search.refine_step(search.stepped.exact())) is not None:
-            return _Flown(stepped.angles, stepped.iterations, none, "checked", None, grid)
+        if attempt == STEPS_AFTER and (fallback := search.refine_step(search.fallback.exact())) is not None:
+            return _Flown(fallback.angles, fallback.iterations, none, "checked", None, grid)
         if attempt > 0:
             following = search.alternative(attempt, grid, slack)
             if not following.found:
                 continue
-            chain = following
-        path = search.refine(chain)
+            node_path = following
+        path = search.refine(node_path)
         over = max(overrun(time, path.angles, rig)[0], search.missed(path) - RATE_MET)
         if best is None or over < best[0]:
             best = over, path
@@ -175,38 +177,38 @@ def _fly(search: Search) -> _Flown:
         blocking, decided_by = Blocking(float(time[1]), FRAMES[int(np.argmax(off))], "rate"), "start_rate"
     if not options.best_effort:
         return _Flown(path.angles, path.iterations, none, decided_by, blocking, grid)
-    for way in search.stepped.foreseen():
-        if (stepped := search.refine_step(way)) is not None:
-            return _Flown(stepped.angles, stepped.iterations, none, "checked", None, grid)
-    effort = least_error(time, search.attitude, path.angles, rig, options, search.start, search.stepped)
+    for way in search.fallback.foreseen():
+        if (fallback := search.refine_step(way)) is not None:
+            return _Flown(fallback.angles, fallback.iterations, none, "checked", None, grid)
+    effort = least_error(time, search.attitude, path.angles, rig, options, search.start, search.fallback)
     if not effort.limited.any() and search.start_rate is None:  # not even that gave the attitude up
         return _Flown(effort.angles, path.iterations, effort.limited, "checked", None, grid)
     return _Flown(effort.angles, path.iterations, effort.limited, decided_by, blocking, grid)
 
 
 def _least_error(search: Search) -> BestEffort:
-    """For a flight without a chain: from the chain that is least over the limits, the least attitude error."""
+    """For a flight without a node path: from the node path that is least over the limits, the least attitude error."""
     search.avoid.clear()
     time, attitude, rig, options = search.time, search.attitude, search.rig, search.options
     for slack in (0.0, 0.5):
-        chain = search.chain(options.grid, slack=slack, stretch=STRETCH, excess=EXCESS)
-        if not chain.found:
+        node_path = search.node_path(options.grid, slack=slack, stretch=STRETCH, excess=EXCESS)
+        if not node_path.found:
             continue
-        if overrun(time, search.curve(chain), rig)[0] > BROKEN:
+        if overrun(time, search.curve(node_path), rig)[0] > BROKEN:
             break
-        path = search.refine(chain)
-        return least_error(time, attitude, path.angles, rig, options, search.start, search.stepped)
-    return afresh(time, attitude, np.empty((0, 4)), rig, options, search.start, search.stepped)
+        path = search.refine(node_path)
+        return least_error(time, attitude, path.angles, rig, options, search.start, search.fallback)
+    return afresh(time, attitude, np.empty((0, 4)), rig, options, search.start, search.fallback)
 
 
 STATEMENTS = {
     "checked": "Feasible: every sample checked by code apart from the planner.",
     "position": "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
-    "no chain of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
+    "no path of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
     "Grid-complete away from the singularity, not a theorem.",
-    "rate": "Infeasible: no chain of nodes obeys the rate limits past the blocking time, even with every edge widened "
+    "rate": "Infeasible: no path of nodes obeys the rate limits past the blocking time, even with every edge widened "
     "by the grid's covering step. Grid-complete away from the singularity, not a theorem.",
-    "acceleration": "Infeasible as far as the search went: chains inside the rate limits exist, but none of those "
+    "acceleration": "Infeasible as far as the search went: node paths inside the rate limits exist, but none of those "
     "refined came inside every limit, with or without regard to the accelerations; "
     "the blocking place is the worst of the best one. Evidence, not a proof.",
     "start_rate": "Infeasible with the start rate asked for: no path was found that takes it up inside the limits; the "
@@ -216,7 +218,13 @@ STATEMENTS = {
 
 
 def _finished(
-    time: Array, attitude: Array, rig: Rig, flown: _Flown, chains: int, begin: float, clock: Callable[[], float] | None
+    time: Array,
+    attitude: Array,
+    rig: Rig,
+    flown: _Flown,
+    node_paths: int,
+    begin: float,
+    clock: Callable[[], float] | None,
 ) -> Plan:
     angles = flown.angles
     if rig.geometry.redundant and not flown.limited.any():
@@ -246,7 +254,7 @@ def _finished(
         np.full(len(time), elapsed / len(time)), elapsed, blocking,
     )  # fmt: skip
     note = "; ".join(part for part in (in_note, out_note) if part)
-    return Plan(solution, verdict, margins(time, angles, rig), inn, out, chains, note)
+    return Plan(solution, verdict, margins(time, angles, rig), inn, out, node_paths, note)
 
 
 def _three_axis(time: Array, attitude: Array, rig: Rig, start: Array | None, options: PlanOptions) -> _Flown:

@@ -1,17 +1,17 @@
-"""The search for one flight's path: chains, the smooth curve along one, its refinement, and others where it failed."""
+"""The search for one flight's path: node paths, the smooth curve along one, its refinement, others where it failed."""
 
 import math
 
 import numpy as np
 
 from fullpose._typing import Array, Progress
-from fullpose.plan.beam_path import BREADTHS, attainable_rates, first_poses, inertial_chain
-from fullpose.plan.fallback import EXACT_ERROR, Stepped
+from fullpose.plan.beam_path import BREADTHS, attainable_rates, beam_path, first_poses
+from fullpose.plan.fallback import EXACT_ERROR, Fallback
 from fullpose.plan.three_axis import turns_into_range
 from fullpose.rig import Rig
 from fullpose.trajectory.nodes import lattice
 from fullpose.trajectory.options import PlanOptions
-from fullpose.trajectory.shortest_path import Avoid, Chain, Programme
+from fullpose.trajectory.shortest_path import Avoid, NodePath, Programme
 from fullpose.trajectory.sqp import MET, locked, missed_rate
 from fullpose.trajectory.windows import Path, overrun, refine_path, smooth_curve, stage_samples
 from fullpose.verify import attitude_errors, payload_attitudes
@@ -38,12 +38,12 @@ class Search:
         self.counted = np.zeros(4, np.bool_)
         self.avoid: list[Avoid] = []
         self.margin_gain = 1.0
-        self.chains = 0
+        self.node_paths = 0
         self.samples = stage_samples(time, options.stage)
-        self.stepped = Stepped(time, attitude, rig, start)
+        self.fallback = Fallback(time, attitude, rig, start)
 
-    def chain(self, grid: float, slack: float = 0.0, stretch: float = 1.0, excess: float = 0.0) -> Chain:
-        """The cheapest chain on a grid [rad]; turns of the wide frames counted only as far as their ranges need it."""
+    def node_path(self, grid: float, slack: float = 0.0, stretch: float = 1.0, excess: float = 0.0) -> NodePath:
+        """The cheapest node path on a grid [rad]; turns of wide frames counted only as far as their ranges need it."""
         low, high = self.rig.position_min, self.rig.position_max
         while True:
             programme = Programme(
@@ -55,13 +55,13 @@ class Search:
             if self.start is not None and self.start_rate is not None:
                 programme.motion = self.start, self.start_rate
             programme.stretch, programme.excess = stretch, excess
-            chain = programme.run(self.start, self._report(0.0, 0.5))
-            if not chain.found and programme.bounded:  # the verdict rests on all that the limits allow
+            node_path = programme.run(self.start, self._report(0.0, 0.5))
+            if not node_path.found and programme.bounded:  # the verdict rests on all that the limits allow
                 programme.everywhere = True
-                chain = programme.run(self.start, self._report(0.0, 0.5))
-            if not chain.found:
-                return chain
-            angles = chain.angles
+                node_path = programme.run(self.start, self._report(0.0, 0.5))
+            if not node_path.found:
+                return node_path
+            angles = node_path.angles
             free = np.isfinite(high) & (high - low >= 2.0 * math.pi) & ~self.counted
             if self.start is None and free.any():
                 shift = np.zeros(4)
@@ -69,20 +69,20 @@ class Search:
                 angles += shift
             outside = free & ((angles.min(axis=0) < low - slack) | (angles.max(axis=0) > high + slack))
             if not outside.any():
-                return chain
+                return node_path
             self.counted |= outside
 
-    def curve(self, chain: Chain) -> Array:
-        """The smooth exact path along a chain (n, 4) [rad]."""
-        return smooth_curve(self.time, self.attitude, self.rig, self.samples, chain, self.start)
+    def curve(self, node_path: NodePath) -> Array:
+        """The smooth exact path along a node path (n, 4) [rad]."""
+        return smooth_curve(self.time, self.attitude, self.rig, self.samples, node_path, self.start)
 
-    def refine(self, chain: Chain) -> Path:
-        """A path along a chain."""
-        self.chains += 1
-        return self._refined(self.curve(chain))
+    def refine(self, node_path: NodePath) -> Path:
+        """A path along a node path."""
+        self.node_paths += 1
+        return self._refined(self.curve(node_path))
 
     def refine_step(self, way: Array) -> Path | None:
-        """A path next to one of `stepped`, or that itself; None where it is not exact, or a start rate is asked for.
+        """A path next to one of `fallback`, or that itself; None where it is not exact, or a start rate is asked for.
 
         No flight is refused that a method flies which looks at less of it.
         """
@@ -107,15 +107,15 @@ class Search:
         return missed_rate(self.time, path.angles, self.rig, self.start_rate)
 
     def steer_away(self, path: Path) -> None:
-        """Make the places where a path failed dear to the chains to come."""
+        """Make the places where a path failed dear to the node paths to come."""
         for failure in path.failures:
             reach = max(AVOID_TIME, self.options.stage)
             first = float(self.time[failure.sample]) - reach
             part = slice(*np.searchsorted(self.time, (first, first + 2.0 * reach)))
             self.avoid.append(Avoid(self.time[part], path.angles[part].copy(), AVOID_RADIUS, AVOID_COST))
 
-    def alternative(self, attempt: int, grid: float, slack: float) -> Chain:
-        """Another chain, after some have failed; attempt from 1 on.
+    def alternative(self, attempt: int, grid: float, slack: float) -> NodePath:
+        """Another node path, after some have failed; attempt from 1 on.
 
         First without a price on the singularity: a flight that must pass through it is better off going straight.
         Then those that know the accelerations, ever wider. Then away from the places that failed; then on a grid twice
@@ -123,7 +123,7 @@ class Search:
         away from the places that failed.
         """
         if 2 <= attempt < 2 + len(BREADTHS):
-            return self._inertial(attempt - 2)
+            return self._beam_path(attempt - 2)
         avoid = self.avoid
         number = attempt if attempt == 1 else attempt - len(BREADTHS)
         self.margin_gain = 0.0 if number == 1 else 4.0 if number == 4 else 1.0
@@ -133,13 +133,13 @@ class Search:
             self.samples = stage_samples(self.time, 0.5 * self.options.stage)
             self.avoid = []
             grid = 0.5 * grid
-        chain = self.chain(grid, slack)
+        node_path = self.node_path(grid, slack)
         self.avoid = avoid
-        return chain
+        return node_path
 
-    def _inertial(self, number: int) -> Chain:
-        """The chain of one of `BREADTHS`; none where there is no freedom, or the flight is too long for a wide one."""
-        none = Chain(np.empty((0, 4)), math.inf, 0)
+    def _beam_path(self, number: int) -> NodePath:
+        """The node path of one of `BREADTHS`; none where there is no freedom, or the flight too long for a wide one."""
+        none = NodePath(np.empty((0, 4)), math.inf, 0)
         time, attitude = self.time[self.samples], np.ascontiguousarray(self.attitude[self.samples])
         if len(time) < 2 or locked(self.rig) or (number > 0 and time[-1] - time[0] > WIDE_SECONDS):
             return none
@@ -150,10 +150,10 @@ class Search:
         if self.start_rate is not None:
             past = float(self.time[1] - self.time[0])
             first_rate = attainable_rates(self.attitude[1], past, self.rig, first, self.start_rate)
-        poses = inertial_chain(
+        poses = beam_path(
             time, attitude, self.rig, self.options, BREADTHS[number], first, first_rate, past, self._report(0.0, 0.5)
         )
-        return Chain(poses, math.nan, len(time))
+        return NodePath(poses, math.nan, len(time))
 
     def _report(self, begin: float, share: float) -> Progress | None:
         if self.progress is None:

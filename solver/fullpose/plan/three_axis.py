@@ -1,6 +1,6 @@
 """The plan of a three-axis rig: there is nothing to choose but one of two Euler sets a sample, and the turns.
 
-The chain of sets with the least squared rates, each as a share of its limit, by dynamic programming over the samples.
+The sequence of sets of least squared rates, each as a share of its limit, by dynamic programming over the samples.
 At the pole, where the first angle is not determined, it keeps its value of the sample before.
 """
 
@@ -15,10 +15,10 @@ from fullpose.trajectory.shortest_path import reference_rates
 
 
 @kernel
-def euler_chain(
+def euler_path(
     first_is_y: bool, time: Array, attitude: Array, weight: Array, low: Array, high: Array, begin: Array, angles: Array
 ) -> None:
-    """angles (n, 3) <- the cheapest chain; time (n,), attitude (n, 3, 3), weight (3,) [s^2/rad^2], begin (3,) [rad].
+    """angles (n, 3) <- the cheapest sequence; time (n,), attitude (n, 3, 3), weight (3,) [s^2/rad^2], begin (3,) [rad].
 
     A set outside low..high (3,) [rad] in every turn costs a thousand times the distance.
     """
@@ -68,7 +68,7 @@ def three_axis_path(time: Array, attitude: Array, rig: Rig, start: Array | None)
     weight = (rig.weight / reference_rates(rig) ** 2)[columns]
     three = np.empty((len(time), 3))
     low, high = rig.position_min[columns], rig.position_max[columns]
-    euler_chain(rig.geometry.axes[columns[0]] == Y, time, attitude, weight, low, high, begin, three)
+    euler_path(rig.geometry.axes[columns[0]] == Y, time, attitude, weight, low, high, begin, three)
     if start is None:
         three += turns_into_range(three, low, high)
     angles = np.zeros((len(time), 4))

@@ -28,6 +28,7 @@ from fullpose.methods.state import (
     FRESH,
     GUESS,
     HI,
+    INCREMENT,
     LO,
     MOVING,
     NULL,
@@ -36,14 +37,13 @@ from fullpose.methods.state import (
     POSE,
     ROWS,
     TOLERANCE,
-    WISH,
     advance,
     finish,
     goal,
+    hold_position,
     new_state,
+    null_space_increment,
     prepare,
-    stand,
-    wish,
 )
 from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import Track
@@ -108,7 +108,8 @@ def preview_block(
 ) -> None:
     """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
 
-    gains: avoidance, centring, homing (without a way), recovery, following. `exact_block`, but for the wish.
+    gains: avoidance, centring, homing (without a way), recovery, following. `exact_block`, but for
+    the null-space increment.
     """
     work = np.empty((ROWS, 4))
     J = np.empty((3, 4))
@@ -129,13 +130,23 @@ def preview_block(
         else:
             h = time[k] - state[CLOCK]
             prepare(table, state, h, work, lo_code, hi_code)
-            if not follow(way_time, way_pose, way_rate, state, h, gains[4], work[WISH]):
-                wish(table, d, h, gains, work[WISH])
+            if not follow(way_time, way_pose, way_rate, state, h, gains[4], work[INCREMENT]):
+                null_space_increment(table, d, h, gains, work[INCREMENT])
             on_target = goal(table, axes, state, target, C, h, gains[3], F, G, e)
             jacobian(axes, d, J)
-            volume = null_vector(J, work[NULL])
+            manipulability = null_vector(J, work[NULL])
             quadratic_step(
-                J, work[NULL], volume, table[WEIGHT], d, work[WISH], e, work[LO], work[HI], work[TOLERANCE], work[GUESS]
+                J,
+                work[NULL],
+                manipulability,
+                table[WEIGHT],
+                d,
+                work[INCREMENT],
+                e,
+                work[LO],
+                work[HI],
+                work[TOLERANCE],
+                work[GUESS],
             )
             iterations[k], code = finish(
                 horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code
@@ -169,7 +180,7 @@ class PreviewStepper:
 
     def begin_at_rest(self, dt: float) -> None:
         """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
-        stand(self._state, dt)
+        hold_position(self._state, dt)
         self._free = False
 
     def void(self) -> None:

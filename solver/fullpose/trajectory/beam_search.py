@@ -4,7 +4,7 @@ The horizon is cut into stages of some 50 ms. A state is a pose with its rates; 
 self-motion are tried inside the box that position, rate, acceleration and braking distance leave (the step's own,
 `fullpose.limits.limit_box`, on stages instead of samples). Of the states that reach one cell of place and rate the
 cheapest is kept, and of the cells the cheapest `beam`. So the choice of the way round (which side, which chart) and the
-inertia of the frames are decided together, which a chain of nodes under rate limits alone cannot.
+inertia of the frames are decided together, which a path of nodes under rate limits alone cannot.
 
 Where no slide stays inside the box the one that shares the excess is taken, dearly paid for: the way found is then the
 one that exceeds least and latest.
@@ -81,7 +81,7 @@ def room(horizontal: bool, table: Array, d: Array, ahead: float) -> float:
 
 
 @kernel
-def place_cost(horizontal: bool, table: Array, weights: Array, d: Array) -> float:
+def pose_cost(horizontal: bool, table: Array, weights: Array, d: Array) -> float:
     """What a pose costs a second: little room, nearness of the singularity and of the end stops, distance from home."""
     s2 = math.sin(d[1])
     c3 = math.cos(d[2])
@@ -229,7 +229,7 @@ def search(
                     if out > 0.0:
                         out /= min(0.5 * table[ACCELERATION, i] * h * h, table[RATE, i] * h, 1.0)
                         over += max(0.0, out - 0.02)
-                dear += place_cost(horizontal, table, weights, x)
+                dear += pose_cost(horizontal, table, weights, x)
                 total = cost[b] + trust[stage] * (h * dear + weights[EXCESS] * min(over, 10.0) * h)
                 if over > 0.0:
                     total += trust[stage] * weights[EXCESS] * h
@@ -262,7 +262,7 @@ def search(
     best = 0
     least = np.inf
     for b in range(count):
-        total = cost[b] + weights[AT_END] * trust[k - 1] * place_cost(horizontal, table, weights, d[k - 1, b])
+        total = cost[b] + weights[AT_END] * trust[k - 1] * pose_cost(horizontal, table, weights, d[k - 1, b])
         if total < least:
             least = total
             best = b

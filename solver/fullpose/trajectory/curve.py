@@ -1,4 +1,4 @@
-"""Exact curves next to given ones: orthogonal projection onto the solutions, and the smooth curve through a chain.
+"""Exact curves next to given ones: orthogonal projection onto the solutions, and the smooth curve through a node path.
 
 The step methods' chart keeps d1 or d4, which is right for one sample but has a corner where the chart changes. Here a
 curve is put back by the shortest way (Newton along J^+), which is smooth in its input; only at the very end does

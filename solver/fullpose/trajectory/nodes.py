@@ -3,7 +3,7 @@
 The null vector of the vertical rig is proportional to (c3, -s2 s3, -c2 c3, -s2): where |cos d3| >= |sin d2| the base
 moves fastest along the curve, elsewhere the inner frame does. Each chart is therefore used only where its own angle
 is the fastest (with some overlap), so that neighbouring nodes lie one grid step apart at most, in every frame: the
-grid covers the curve, and a chain that is missing on it, with the rates widened by that step, is missing altogether.
+grid covers the curve, and a node path that is missing on it, with rates widened by that step, is missing altogether.
 Near the singularity, where both measures vanish, that bound does not hold.
 """
 
@@ -73,7 +73,7 @@ def lattice(rig: Rig, grid: float, counted: NDArray[np.bool_] | None = None, sla
 
 
 @kernel
-def _place(d: float, low: float) -> float:
+def _put(d: float, low: float) -> float:
     return low + (d - low) - TURN * math.floor((d - low) / TURN)
 
 
@@ -134,7 +134,7 @@ def fill_nodes(
                     d[3] = d4 if branch == 0 else d4 + math.pi
                     inside = True
                     for k in range(4):
-                        position[i, k] = _place(d[k], low[k])
+                        position[i, k] = _put(d[k], low[k])
                         if position[i, k] > high[k]:
                             inside = False
                     measure[i] = clear
@@ -164,7 +164,7 @@ def fill_nodes(
                     d[3] = angle
                     inside = True
                     for k in range(4):
-                        position[i, k] = _place(d[k], low[k])
+                        position[i, k] = _put(d[k], low[k])
                         if position[i, k] > high[k]:
                             inside = False
                     measure[i] = clear

@@ -1,4 +1,4 @@
-"""Dynamic programming over the nodes: the cheapest chain under the rate limits (mathematics, section 8, steps 1 and 2).
+"""Dynamic programming: the cheapest path of nodes under the rate limits (mathematics, section 8, steps 1 and 2).
 
 Stages lie some 50 ms apart; an edge joins two nodes of neighbouring stages whose angles differ, frame by frame, by no
 more than the rate limit allows. The cost is the integral of the rates squared, each as a share of its limit, plus a
@@ -27,7 +27,7 @@ LOOK, LOOK_CELLS = 10.0, 4.0
 
 @dataclass(frozen=True)
 class Avoid:
-    """A place that a chain should stay away from: within `radius` [rad] of `angles` (k, 4) [rad] at `time` (k,) [s]."""
+    """What a node path should stay away from: within `radius` [rad] of `angles` (k, 4) [rad] at `time` (k,) [s]."""
 
     time: Array
     angles: Array
@@ -36,10 +36,10 @@ class Avoid:
 
 
 @dataclass(frozen=True)
-class Chain:
+class NodePath:
     """A way through the stages, or how far one came.
 
-    `angles` (k, 4) [rad] unwrapped, one row a stage; empty where there is no chain. `reached` stages could be reached;
+    `angles` (k, 4) [rad] unwrapped, one row a stage; empty where there is none. `reached` stages could be reached;
     `frame`, `limit` (indices of `FRAMES`, `LIMITS`) closed the next one.
     """
 
@@ -51,7 +51,7 @@ class Chain:
 
     @property
     def found(self) -> bool:
-        """Whether a chain reaches the end."""
+        """Whether a node path reaches the end."""
         return len(self.angles) > 0
 
 
@@ -64,7 +64,7 @@ def reference_rates(rig: Rig) -> Array:
 
 
 class Programme:
-    """The dynamic programme of one flight on one grid; `run` finds the chain."""
+    """The dynamic programme of one flight on one grid; `run` finds the node path."""
 
     def __init__(
         self, time: Array, attitude: Array, rig: Rig, grid: Lattice, options: PlanOptions, slack: float = 0.0
@@ -132,15 +132,15 @@ class Programme:
         gap, reach = self._inertia(stage, position)
         return np.asarray((gap <= reach).all(axis=1))
 
-    def run(self, start: Array | None = None, progress: Progress | None = None) -> Chain:
-        """The cheapest chain from the nodes next to `start` (4,) [rad], or from any."""
+    def run(self, start: Array | None = None, progress: Progress | None = None) -> NodePath:
+        """The cheapest node path from the nodes next to `start` (4,) [rad], or from any."""
         grid, n = self.grid, len(self.time)
         W = int(np.prod(grid.copies))
         block = max(64, BACK_BYTES // (4 * grid.states))
         position, cost, alive = self.nodes(0)
         costs = self._first(position, cost, alive, start, W)
         if not np.isfinite(costs).any():
-            return Chain(np.empty((0, 4)), math.inf, 0, *self._closed_by_position(0))
+            return NodePath(np.empty((0, 4)), math.inf, 0, *self._closed_by_position(0))
         checkpoints = [(0, costs, position)]
         back = np.empty((min(block, max(1, n - 1)), grid.states), np.int32)
         for stage in range(1, n):
@@ -148,7 +148,7 @@ class Programme:
                 checkpoints.append((stage - 1, costs, position))
             ahead = self._step(stage, position, costs, back[(stage - 1) % block])
             if ahead is None:
-                return Chain(np.empty((0, 4)), math.inf, stage, *self._closed_by(stage, position, costs))
+                return NodePath(np.empty((0, 4)), math.inf, stage, *self._closed_by(stage, position, costs))
             position, costs = ahead
             if progress is not None and stage % 64 == 0:
                 progress(stage, n)
@@ -166,7 +166,7 @@ class Programme:
                     where, at = again
             for stage in range(last, first, -1):
                 path[stage - 1] = back[(stage - 1) % block][path[stage]]
-        return Chain(self._unwrapped(path, W, start), float(costs[final]), n)
+        return NodePath(self._unwrapped(path, W, start), float(costs[final]), n)
 
     def _first(self, position: Array, cost: Array, alive: NDArray[np.bool_], start: Array | None, W: int) -> Array:
         costs = np.full((len(position), W), math.inf)
@@ -194,7 +194,7 @@ class Programme:
 
     @property
     def bounded(self) -> bool:
-        """Whether edges are kept short that the limits do not bound: a chain that is missing then may exist."""
+        """Whether edges are kept short that the limits do not bound: a node path that is missing then may exist."""
         return self._unlimited and not self.everywhere
 
     def _step(self, stage: int, position: Array, costs: Array, back: Counts) -> tuple[Array, Array] | None:

@@ -1,4 +1,4 @@
-"""Refinement: a chain made smooth and brought inside every limit (mathematics, section 8, step 3).
+"""Refinement: a node path made smooth and brought inside every limit (mathematics, section 8, step 3).
 
 From an exact path d, displace it along the self-motion, x = d + n z(t), by the quadratic programme of the linearised
 limits; put the result back on the solutions; again, until nothing moves. Long flights go window by window, each

@@ -1,4 +1,4 @@
-"""From a chain to a path for the whole flight: smooth, exact, refined window by window."""
+"""From a node path to a path for the whole flight: smooth, exact, refined window by window."""
 
 from dataclasses import dataclass
 
@@ -9,10 +9,10 @@ from fullpose._typing import Array, Counts, Integers, Progress
 from fullpose.rig import Rig
 from fullpose.trajectory.curve import closest_all, hold_locked, smoothed, spline_rows, spline_slopes
 from fullpose.trajectory.options import PlanOptions
-from fullpose.trajectory.shortest_path import Chain
+from fullpose.trajectory.shortest_path import NodePath
 from fullpose.trajectory.sqp import MET, OVERRUN, Refined, refine, rig_limits, worst
 
-STIFFNESS = (5.0, 0.3, 0.0)  # of the smoothing of a chain, tried in turn until the path does not jump
+STIFFNESS = (5.0, 0.3, 0.0)  # of the smoothing of a node path, tried in turn until the path does not jump
 JUMP = 4.0  # times the rate limit between two samples: no curve any more
 
 
@@ -35,10 +35,12 @@ def stage_samples(time: Array, stage: float) -> Integers:
     return np.unique(np.r_[0, np.clip(at, 0, n - 1), n - 1])
 
 
-def smooth_curve(time: Array, attitude: Array, rig: Rig, samples: Integers, chain: Chain, start: Array | None) -> Array:
-    """The exact path (n, 4) [rad] next to the smoothed chain, whose stages are at `samples`."""
+def smooth_curve(
+    time: Array, attitude: Array, rig: Rig, samples: Integers, node_path: NodePath, start: Array | None
+) -> Array:
+    """The exact path (n, 4) [rad] next to the smoothed node path, whose stages are at `samples`."""
     knots = time[samples]
-    points = chain.angles.copy()
+    points = node_path.angles.copy()
     if start is not None:
         points[0] = start
     d = np.empty((len(time), 4))

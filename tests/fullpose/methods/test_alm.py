@@ -32,8 +32,8 @@ def test_the_iteration_finds_the_closed_form(seed: int, width: float) -> None:
     d = random.uniform(-np.pi, np.pi, 4)
     J, n = np.empty((3, 4)), np.empty(4)
     jacobian(RIGS[("vertical-4", "horizontal-4")[seed % 2]].axes, d, J)
-    volume = null_vector(J, n)
-    assume(volume > 0.1)
+    manipulability = null_vector(J, n)
+    assume(manipulability > 0.1)
     e = random.normal(size=3) * 10.0 ** random.uniform(-5, -2)
     scale = float(np.abs(e).max())
     half = width * scale * random.uniform(0.2, 1.0, 4)
@@ -41,7 +41,7 @@ def test_the_iteration_finds_the_closed_form(seed: int, width: float) -> None:
     weight, g = np.exp(random.normal(size=4)), random.normal(size=4) * 0.2 * scale
     x, s = np.empty(4), np.empty(4)
     lo, hi = middle - half, middle + half
-    feasible = quadratic_step(J, n, volume, weight, np.zeros(4), g, e, lo, hi, np.zeros(4), x)
+    feasible = quadratic_step(J, n, manipulability, weight, np.zeros(4), g, e, lo, hi, np.zeros(4), x)
     count = multiplier_step(J, weight, g, e, lo, hi, TUNING, np.empty((MULTIPLIER_ROWS, 5)), s)
     assert abs(count) <= DEFAULT.max_iterations
     if feasible:

@@ -13,19 +13,19 @@ from fullpose.methods.state import (
     CODE,
     GUESS,
     HI,
+    INCREMENT,
     LO,
     POSE,
     ROWS,
     TOLERANCE,
-    WISH,
     advance,
     give_way,
     goal,
     new_state,
+    null_space_increment,
     outermost_code,
     rotate_back,
     settle,
-    wish,
 )
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.solution import EXACT, limited_code
@@ -51,7 +51,7 @@ def test_rotate_back_is_undone_by_the_rotation_error(e: Array) -> None:
 
 
 @given(POSE_ANGLES)
-def test_wish_follows_its_potentials(d: Array) -> None:
+def test_the_increment_follows_its_potentials(d: Array) -> None:
     """Steps up the gradient of avoidance/2 log(m + 0.1) and down the quartic of the end stops, by differences."""
     rig = Rig(
         "test", Geometry.VERTICAL_4, (FrameLimits(-4.0, 4.0), FrameLimits(), FrameLimits(), FrameLimits(-3.0, 5.0))
@@ -64,7 +64,7 @@ def test_wish_follows_its_potentials(d: Array) -> None:
         return float(0.35 * np.log(m + 0.1) - 1.3 * stops - 0.1 * np.sum(x**2))
 
     out = np.empty(4)
-    wish(table, d, h, gains, out)
+    null_space_increment(table, d, h, gains, out)
     step = 1e-6
     for i in range(4):
         ahead, behind = d.copy(), d.copy()
@@ -114,7 +114,7 @@ def test_settle_finds_a_pose_inside_a_box_that_holds_one(d: Array, seed: int) ->
     random = np.random.default_rng(seed)
     C = payload_attitudes(RIG, d[None])[0]
     there = work_for(d, np.inf, np.zeros(4))
-    there[WISH] = 1e-3 * random.normal(size=4)
+    there[INCREMENT] = 1e-3 * random.normal(size=4)
     assert settle(False, np.ones(4), d, C, there) > 0
     work = work_for(there[POSE], 1e-6, np.zeros(4))
     work[GUESS] = d

@@ -1,4 +1,6 @@
-"""The marks of limited samples: the limit that holds them in the written angles, and only limits that the rig has."""
+"""The codes of limited samples: the limit that holds them in the written angles, and only limits that the rig has."""
+
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
 from fullpose.plan import PlanOptions, plan
-from fullpose.plan.active_limits import limit_marks
+from fullpose.plan.active_limits import active_limits
 from fullpose.rig import FRAMES, LIMITS, FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.solution import EXACT, limited_code, limited_name
@@ -43,9 +45,9 @@ def test_only_limits_that_the_rig_has_are_named(rig, seed, n):
     x = np.clip(x, rig.position_min, rig.position_max)
     C = payload_attitudes(rig, x + rng.normal(0.0, 0.3, (n, 4)))
     missed = rng.random(n) < 0.5
-    marks = limit_marks(TIME[:n], C, x, rig, missed)
-    assert ((marks != EXACT) == missed).all()
-    assert all(has(rig, code) for code in np.unique(marks[missed]))
+    codes = active_limits(TIME[:n], C, x, rig, missed)
+    assert ((codes != EXACT) == missed).all()
+    assert all(has(rig, code) for code in np.unique(codes[missed]))
 
 
 PARTIAL = {
@@ -102,8 +104,8 @@ def test_the_limit_that_a_frame_is_on_is_named(frame, limit, side):
     short[:, frame] += side * 0.1  # where the frame would have to be
     missed = np.zeros(len(t), np.bool_)
     missed[45:55] = True
-    marks = limit_marks(t, payload_attitudes(RIG, short), x, RIG, missed)
-    assert (marks[45:55] == limited_code(frame, limit)).all()
+    codes = active_limits(t, payload_attitudes(RIG, short), x, RIG, missed)
+    assert (codes[45:55] == limited_code(frame, limit)).all()
 
 
 def test_the_nearest_in_time_is_named_where_none_is_active():
@@ -117,9 +119,9 @@ def test_the_nearest_in_time_is_named_where_none_is_active():
     missed[[60, 150]] = True
     rig = Rig("two", Geometry.VERTICAL_4, (FREE, FrameLimits(max_rate=1.0), FREE, FrameLimits(-1, 1)))
     C = payload_attitudes(rig, x + np.array([0.0, 0.1, 0.0, 0.1]))
-    marks = limit_marks(t, C, x, rig, missed)
-    assert marks[60] == limited_code(1, 1)
-    assert marks[150] == limited_code(3, 0)
+    codes = active_limits(t, C, x, rig, missed)
+    assert codes[60] == limited_code(1, 1)
+    assert codes[150] == limited_code(3, 0)
 
 
 def test_in_pieces_they_are_the_same(monkeypatch):
@@ -127,9 +129,9 @@ def test_in_pieces_they_are_the_same(monkeypatch):
     rig = builtin_rigs()["vertical-limited"]
     x = np.random.default_rng(0).normal(0.0, 0.02, (len(t), 4)).cumsum(axis=0).clip(-1, 1)
     missed = np.arange(len(t)) % 3 > 0
-    whole = limit_marks(t, dcm_from_quaternion(q), x, rig, missed)
-    monkeypatch.setattr("fullpose.plan.active_limits.CHUNK", 17)
-    assert np.array_equal(limit_marks(t, dcm_from_quaternion(q), x, rig, missed), whole)
+    whole = active_limits(t, dcm_from_quaternion(q), x, rig, missed)
+    monkeypatch.setattr(import_module("fullpose.plan.active_limits"), "CHUNK", 17)
+    assert np.array_equal(active_limits(t, dcm_from_quaternion(q), x, rig, missed), whole)
 
 
 def test_a_frame_without_room_is_named_only_where_there_is_nothing_else():
@@ -139,6 +141,6 @@ def test_a_frame_without_room_is_named_only_where_there_is_nothing_else():
     missed = np.ones(10, np.bool_)
     C = payload_attitudes(RIG, x + np.array([0.2, 0.0, 0.0, 0.0]))
     alone = Rig("held", Geometry.VERTICAL_4, (held, FREE, FREE, FREE))
-    assert (limit_marks(t, C, x, alone, missed) == limited_code(0, 0)).all()
+    assert (active_limits(t, C, x, alone, missed) == limited_code(0, 0)).all()
     other = Rig("held", Geometry.VERTICAL_4, (held, FREE, FREE, FrameLimits(-0.1, 0.1)))
-    assert (limit_marks(t, C, x, other, missed) == limited_code(3, 0)).all()
+    assert (active_limits(t, C, x, other, missed) == limited_code(3, 0)).all()

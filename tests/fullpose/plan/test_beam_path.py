@@ -1,4 +1,6 @@
-"""Chains that know the accelerations: flights flyable by construction, pieces, first poses, attainable rates."""
+"""Node paths that know the accelerations: flights flyable by construction, pieces, first poses, attainable rates."""
+
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -6,7 +8,7 @@ import pytest
 from fullpose.errors import CancelledError
 from fullpose.flyable import flyable_path, rig_of
 from fullpose.plan import PlanOptions, plan
-from fullpose.plan.beam_path import BREADTHS, attainable_rates, first_poses, inertial_chain
+from fullpose.plan.beam_path import BREADTHS, attainable_rates, beam_path, first_poses
 from fullpose.rig import Geometry
 from fullpose.trajectory.windows import stage_samples
 from fullpose.verify import attitude_errors, payload_attitudes, verify
@@ -46,23 +48,23 @@ def stages(name="multi", seed=1, duration=4.0):
 
 def test_pieces_are_exact_continuous_and_inside_the_rates(monkeypatch):
     rig, t, C = stages()
-    monkeypatch.setattr("fullpose.plan.beam_path.PIECE", 1.0)
-    monkeypatch.setattr("fullpose.plan.beam_path.FORESIGHT", 0.5)
+    monkeypatch.setattr(import_module("fullpose.plan.beam_path"), "PIECE", 1.0)
+    monkeypatch.setattr(import_module("fullpose.plan.beam_path"), "FORESIGHT", 0.5)
     told = []
     first = first_poses(C[0], rig)
-    chain = inertial_chain(
+    node_path = beam_path(
         t, C, rig, PLAIN, BREADTHS[0], first, np.zeros_like(first), 0.0, lambda done, total: told.append((done, total))
     )
     assert len(told) > 2
     assert told[-1] == (len(t), len(t))
-    assert attitude_errors(payload_attitudes(rig, chain), C)[0].max() < 1e-9
-    assert (np.abs(np.diff(chain, axis=0)) <= 1.01 * rig.max_rate * 0.05).all()
+    assert attitude_errors(payload_attitudes(rig, node_path), C)[0].max() < 1e-9
+    assert (np.abs(np.diff(node_path, axis=0)) <= 1.01 * rig.max_rate * 0.05).all()
 
     def stop(done, total):
         raise CancelledError("enough")
 
     with pytest.raises(CancelledError):
-        inertial_chain(t, C, rig, PLAIN, BREADTHS[0], first, np.zeros_like(first), 0.0, stop)
+        beam_path(t, C, rig, PLAIN, BREADTHS[0], first, np.zeros_like(first), 0.0, stop)
 
 
 @pytest.mark.parametrize("name", ["narrow", "multi", "free", "tight"])

@@ -7,7 +7,7 @@ import pytest
 
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.plan import PlanOptions, plan
-from fullpose.plan.fallback import Stepped
+from fullpose.plan.fallback import Fallback
 from fullpose.plan.strategies import Search
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
@@ -58,7 +58,7 @@ def test_what_the_step_method_flies_is_planned(seed: int) -> None:
 
 
 def test_a_real_roll_with_a_slow_inner_frame_is_planned() -> None:
-    """The chains turn this roll over the inner frame; by the step method's way it need not turn."""
+    """The node paths turn this roll over the inner frame; by the step method's way it need not turn."""
     t, q = example_flight("slow_roll")
     time, attitude = t[::4], dcm_from_quaternion(q[::4])
     free = FrameLimits()
@@ -71,20 +71,20 @@ def test_a_real_roll_with_a_slow_inner_frame_is_planned() -> None:
 def test_the_ways_are_inside_the_limits_and_made_once() -> None:
     rig = builtin_rigs()["vertical-limited"]
     time, attitude = tumble(3, 150.0)
-    stepped = Stepped(time, attitude, rig, None)
-    for way in (stepped.exact(), *stepped.foreseen()):
+    fallback = Fallback(time, attitude, rig, None)
+    for way in (fallback.exact(), *fallback.foreseen()):
         assert not verify(time, way, rig, attitude).violations
-    assert stepped.exact() is stepped.exact()
-    assert stepped.foreseen() is stepped.foreseen()
-    closest = stepped.closest()
-    assert not any(closest is way for way in (stepped.exact(), *stepped.foreseen()))
+    assert fallback.exact() is fallback.exact()
+    assert fallback.foreseen() is fallback.foreseen()
+    closest = fallback.closest()
+    assert not any(closest is way for way in (fallback.exact(), *fallback.foreseen()))
 
 
 def test_a_way_that_misses_the_attitude_is_none() -> None:
     rig = some_limits(23)
     time, attitude = tumble(23, 12.0)
     search = Search(time, attitude, rig, None, None, PlanOptions(), None)
-    way = search.stepped.exact()
+    way = search.fallback.exact()
     assert search.refine_step(way) is not None
     off = way.copy()
     off[150:] += 1e-6

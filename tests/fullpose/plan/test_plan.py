@@ -1,6 +1,7 @@
 """`plan` as a whole: start and start rate, progress, cancelling, options, margins, the path through the singularity."""
 
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -171,7 +172,7 @@ def test_margins_and_check_in_pieces_agree_with_the_whole(monkeypatch):
     t, C = flight()
     x = plan(t, C, LIMITED).solution.angles
     whole, whole_check = margins(t, x, LIMITED), check(t, C, 1.5 * x, LIMITED)
-    monkeypatch.setattr("fullpose.plan.verdict.CHUNK", 100)
+    monkeypatch.setattr(import_module("fullpose.plan.verdict"), "CHUNK", 100)
     parts, parts_check = margins(t, x, LIMITED), check(t, C, 1.5 * x, LIMITED)
     for name in ("position", "rate", "acceleration"):
         assert np.array_equal(getattr(whole, name), getattr(parts, name), equal_nan=True)

@@ -1,6 +1,7 @@
 """What a verdict says of the time between samples."""
 
 import math
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -76,7 +77,7 @@ def test_pieces_agree_with_the_whole(monkeypatch):
     x = 3.0 * np.sin(np.outer(t, [3.0, 5.0, 7.0, 9.0]))
     C = payload_attitudes(FREE, 1.01 * x)
     whole = between_samples(t, C, x, FREE)
-    monkeypatch.setattr("fullpose.plan.verdict.CHUNK", 61)
+    monkeypatch.setattr(import_module("fullpose.plan.verdict"), "CHUNK", 61)
     assert between_samples(t, C, x, FREE) == whole
 
 

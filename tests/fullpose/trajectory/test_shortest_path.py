@@ -26,7 +26,7 @@ def programme(rig, seed=3, stages=8, grid=12.0, rate=60.0, interval=0.1, **chang
 
 
 def brute_force(p):
-    """The least cost by dense matrices over all pairs of nodes, inf where there is no chain."""
+    """The least cost by dense matrices over all pairs of nodes, inf where there is no node path."""
     position, cost, alive = p.nodes(0)
     best = np.where(alive, cost, np.inf)
     rates = reference_rates(p.rig)
@@ -50,19 +50,19 @@ def test_same_cost_as_the_search_over_all_pairs(geometry, rate, seed):
     frames = tuple(FrameLimits(-s * DEG, s * DEG, r * DEG) for s, r in ((170, 200), (170, 250), (100, 250), (60, 600)))
     p = programme(Rig("r", geometry, frames), seed=seed, rate=rate)
     expected = brute_force(p)
-    chain = p.run()
-    assert chain.found == np.isfinite(expected)
-    if chain.found:
-        assert chain.cost == pytest.approx(expected, rel=1e-12)
+    node_path = p.run()
+    assert node_path.found == np.isfinite(expected)
+    if node_path.found:
+        assert node_path.cost == pytest.approx(expected, rel=1e-12)
 
 
 def test_chain_is_exact_continuous_and_within_the_rates():
     p = programme(LIMITED, stages=100, grid=2.0, interval=0.05)
-    chain = p.run()
-    assert chain.found
-    assert np.abs(payload_attitudes(LIMITED, chain.angles) - p.attitude).max() < 2e-13
-    assert (np.abs(np.diff(chain.angles, axis=0)) <= LIMITED.max_rate * 0.05 * (1 + 1e-9)).all()
-    assert (np.abs(chain.angles[:, 3]) <= 60 * DEG).all()
+    node_path = p.run()
+    assert node_path.found
+    assert np.abs(payload_attitudes(LIMITED, node_path.angles) - p.attitude).max() < 2e-13
+    assert (np.abs(np.diff(node_path.angles, axis=0)) <= LIMITED.max_rate * 0.05 * (1 + 1e-9)).all()
+    assert (np.abs(node_path.angles[:, 3]) <= 60 * DEG).all()
 
 
 def test_pointers_computed_again_give_the_same_chain(monkeypatch):
@@ -78,10 +78,10 @@ def test_the_frontier_names_the_rate_that_closed_it():
     C = dcm_from_euler(0.0, 200 * DEG * np.clip(time - 0.5, 0, None), 0.0)  # pitch alone, from half a second on
     slow = FrameLimits(-50 * DEG, 50 * DEG, 40 * DEG)
     rig = Rig("slow", Geometry.VERTICAL_4, (slow, FrameLimits(max_rate=60 * DEG), slow, slow))
-    chain = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
-    assert not chain.found
-    assert 0.5 < time[chain.reached] < 0.8
-    assert (chain.frame, chain.limit) == (1, 1)
+    node_path = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
+    assert not node_path.found
+    assert 0.5 < time[node_path.reached] < 0.8
+    assert (node_path.frame, node_path.limit) == (1, 1)
 
 
 def test_the_frontier_names_the_range_that_closed_it():
@@ -89,10 +89,10 @@ def test_the_frontier_names_the_range_that_closed_it():
     C = dcm_from_euler(0.0, 90 * DEG * time, 0.0)
     narrow = FrameLimits(-20 * DEG, 20 * DEG)
     rig = Rig("narrow", Geometry.VERTICAL_4, (narrow, FrameLimits(-30 * DEG, 30 * DEG), narrow, narrow))
-    chain = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
-    assert not chain.found
-    assert chain.limit == 0
-    assert 20 <= 90 * time[chain.reached] <= 60
+    node_path = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
+    assert not node_path.found
+    assert node_path.limit == 0
+    assert 20 <= 90 * time[node_path.reached] <= 60
 
 
 def test_turns_of_a_bounded_frame_are_counted():
@@ -108,11 +108,11 @@ def test_turns_of_a_bounded_frame_are_counted():
     counted = np.array([True, False, False, False])
     for turn, fits in ((450.0, True), (480.0, False)):
         C = dcm_from_euler(turn * DEG * time / 8.0, 0.0, 0.0)
-        chain = Programme(time, C, rig, lattice(rig, 2 * DEG, counted), PlanOptions()).run()
-        assert chain.found == fits
+        node_path = Programme(time, C, rig, lattice(rig, 2 * DEG, counted), PlanOptions()).run()
+        assert node_path.found == fits
         if fits:
-            assert chain.angles[:, 0].min() >= 0.0
-            assert chain.angles[:, 0].max() <= 450 * DEG + 1e-12
+            assert node_path.angles[:, 0].min() >= 0.0
+            assert node_path.angles[:, 0].max() <= 450 * DEG + 1e-12
 
 
 def test_without_rate_limits_the_chain_is_looked_for_nearby_and_then_everywhere():
@@ -124,7 +124,7 @@ def test_without_rate_limits_the_chain_is_looked_for_nearby_and_then_everywhere(
     p.everywhere = True
     assert not p.bounded
     assert (p._reach(1) > np.pi).all()
-    assert near.cost == pytest.approx(p.run().cost)  # the cheapest chain has no long edges
+    assert near.cost == pytest.approx(p.run().cost)  # the cheapest node path has no long edges
     assert not programme(LIMITED).bounded
 
 
@@ -134,16 +134,16 @@ def test_a_chain_that_is_missing_nearby_is_looked_for_everywhere(monkeypatch):
     p = programme(Rig("free", Geometry.VERTICAL_4, (FrameLimits(),) * 4), interval=0.05)
     assert not p.run().found
     search = Search(p.time, p.attitude, p.rig, None, None, PlanOptions(), None)
-    assert search.chain(p.grid.step).found
+    assert search.node_path(p.grid.step).found
 
 
 def test_inertia_that_closes_the_way_is_named_as_an_acceleration():
     p = programme(replace_acceleration(LIMITED, 1.0 * DEG), stages=20, grid=2.0, interval=0.05)
     pose = programme(LIMITED, stages=20, grid=2.0, interval=0.05).run().angles[0]
     p.motion = pose, np.array([3.0, -3.0, 3.0, 3.0])
-    chain = p.run(pose)
-    assert not chain.found
-    assert chain.limit == 2
+    node_path = p.run(pose)
+    assert not node_path.found
+    assert node_path.limit == 2
 
 
 def replace_acceleration(rig, value):

@@ -37,8 +37,8 @@ def flight():
     t, q = random_flight(3, 4.0, 250.0, 110 * DEG)
     C = dcm_from_quaternion(q)
     samples = stage_samples(t, 0.05)
-    chain = Programme(t[samples], C[samples], RIG, lattice(RIG, DEG), PlanOptions()).run()
-    return t, C, smooth_curve(t, C, RIG, samples, chain, None)
+    node_path = Programme(t[samples], C[samples], RIG, lattice(RIG, DEG), PlanOptions()).run()
+    return t, C, smooth_curve(t, C, RIG, samples, node_path, None)
 
 
 @pytest.mark.parametrize("kind", [0, 1, 2])
