@@ -66,8 +66,7 @@ async def stop_once(host: RigHost, plan: Path, over: Callable[[], None], sign: f
     pose = host.snapshot().pose_deg
     await operator.must("move", target_deg=[v + sign * 300.0 for v in pose])
     await asyncio.sleep(0.4)
-    shared = host._shared
-    assert shared is not None
+    shared = host.memory
     asked = await asyncio.to_thread(_asked, over)
     await operator.until("estopped")
     await asyncio.sleep(0.05)

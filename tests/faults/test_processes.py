@@ -67,8 +67,7 @@ def test_a_killed_rig_process_is_said_at_once_and_its_record_is_whole(tmp_path: 
             await operator.fly(plan)
             await asyncio.sleep(float(np.random.default_rng(seed).uniform(0.1, 4.0)))
             pid = host.snapshot().health.rig_pid
-            shared = host._shared
-            assert shared is not None
+            shared = host.memory
             revision = host.revision
             killed = time.monotonic()
             os.kill(pid, signal.SIGKILL)
@@ -104,8 +103,7 @@ def test_a_process_killed_while_it_published_keeps_its_last_words(tmp_path: Path
             await operator.arm(written(tmp_path / "plan", plan_of(config.rig, 1.0)))
             assert host.snapshot().state == "armed"
             pid = host.snapshot().health.rig_pid
-            shared = host._shared
-            assert shared is not None
+            shared = host.memory
             os.kill(pid, signal.SIGSTOP)
             shared._text["version"] += 1  # as it is in the middle of it
             os.kill(pid, signal.SIGKILL)
@@ -171,8 +169,7 @@ def test_a_killed_recorder_loses_no_more_than_a_chunk_and_is_replaced_at_rest(tm
         async with hosted(config) as (host, operator):
             await operator.fly(plan)
             await asyncio.sleep(2.0)
-            shared = host._shared
-            assert shared is not None
+            shared = host.memory
             last = shared.ring.head
             os.kill(int(shared.header["recorder_pid"][0]), signal.SIGKILL)
             snapshot = await operator.until("armed", "faulted")
@@ -309,8 +306,7 @@ def test_a_thousand_queued_commands_do_not_delay_an_estop(tmp_path: Path) -> Non
         async with hosted(config) as (host, operator):
             await operator.fly(plan)
             await asyncio.sleep(1.0)
-            shared = host._shared
-            assert shared is not None
+            shared = host.memory
             # Pretended loads: each is refused, but only after it was read and judged.
             queued = [asyncio.ensure_future(host.command("load", {}, "noise", None)) for _ in range(1000)]
             await asyncio.sleep(0.005)

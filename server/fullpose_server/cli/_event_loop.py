@@ -16,7 +16,7 @@ import uvloop
 from fullpose_server.app import create_app
 from fullpose_server.cli._exit import CommandError, fail
 from fullpose_server.errors import ServerError
-from fullpose_server.runtime.supervisor.process_manager import HostError
+from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.scene.scenes import prewarm
 from fullpose_server.settings import Settings
 

@@ -18,6 +18,8 @@ from fullpose_server.runtime.contract.messages import Reply, Snapshot
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.alarms import Alarm, Severity
 from fullpose_server.session.lease import LeaseToken
+from fullpose_server.session.states import IN_MOTION
+from tests.support.waiting import answered, soon
 
 
 def plan_of(
@@ -99,17 +101,31 @@ class Operator:
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self.host.wait_change(snapshot.revision), 0.2)
 
+    async def at_rest(self, command: str) -> Reply:
+        """What `command` is answered once the rig is at rest."""
+
+        async def ask() -> Reply | None:
+            reply = await self.say(command)
+            return None if reply.error is not None and reply.error.code == "not_at_rest" else reply
+
+        return await answered(ask)
+
     async def recover(self) -> None:
         """Acknowledge and reset, once at rest."""
         await self.must("acknowledge")
-        for _ in range(400):
-            reply = await self.say("reset")
-            if reply.ok:
-                return
-            assert reply.error is not None
-            assert reply.error.code == "not_at_rest", reply
-            await asyncio.sleep(0.01)
-        raise AssertionError("never at rest")
+        reply = await self.at_rest("reset")
+        assert reply.ok, reply
+
+
+async def ticked(host: RigHost, seconds: float) -> None:
+    """Wait until the rig's loop has run on for `seconds` of its own time."""
+
+    def ticks() -> int:
+        newest = host.latest()
+        return -1 if newest is None else int(newest["tick"][0])
+
+    end = ticks() + seconds * host.rate_hz
+    await soon(lambda: ticks() >= end)
 
 
 # A starved machine is late, and its table lags. It is told in warnings; what is tested is seldom how much.
@@ -147,9 +163,9 @@ async def hosted(config: RigConfig) -> AsyncIterator[tuple[RigHost, Operator]]:
         yield host, Operator(host)
     finally:
         snapshot = host.snapshot()
-        if snapshot.health.rig_alive and snapshot.state in ("running", "held", "positioning", "live", "stopping"):
+        if snapshot.health.rig_alive and snapshot.state in IN_MOTION:
             host.estop("test end")
-            await asyncio.sleep(2.0)
+            await soon(lambda: host.snapshot().state not in IN_MOTION)
         await host.close(stop_rig=True)
 
 

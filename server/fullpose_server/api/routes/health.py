@@ -48,6 +48,7 @@ def _wrong(services: Services) -> list[str]:
         state = host.snapshot().health
         if not state.rig_alive:
             found.append(f"rig {host.name}: its process does not answer")
+        found += [f"rig {host.name}: {fault}" for fault in host.faults()]
         if state.recorder.error:
             found.append(f"rig {host.name}: recorder: {state.recorder.error}")
     return found

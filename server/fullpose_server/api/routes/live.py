@@ -27,7 +27,7 @@ from fullpose_server.api.schemas.live import (
 )
 from fullpose_server.api.streams.live_link import LinkLostError, LiveLink, split
 from fullpose_server.runtime.live.packets import Kind, LiveReply, LiveStatus, encode_sample
-from fullpose_server.runtime.supervisor.process_manager import HostError
+from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.lease import LeaseToken
 

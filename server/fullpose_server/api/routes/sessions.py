@@ -21,9 +21,8 @@ from fullpose_server.api.schemas.session import (
 )
 from fullpose_server.api.session_view import lease_out, session_out
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
-from fullpose_server.runtime.supervisor.control_link import RequestTooLargeError
-from fullpose_server.runtime.supervisor.process_manager import HostError
-from fullpose_server.runtime.supervisor.rig_client import RefusedError, RigHost
+from fullpose_server.runtime.supervisor.errors import HostError, RefusedError, RequestTooLargeError
+from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.lease import LEASE_NEEDED
 from fullpose_server.session.lease import LeaseToken as Token
 from fullpose_server.session.states import NEEDS_NO_LEASE, Command

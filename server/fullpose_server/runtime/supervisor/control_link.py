@@ -7,15 +7,8 @@ from typing import Any
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.messages import MAX_REQUEST
 from fullpose_server.runtime.contract.rig_paths import RigPaths, control_socket
+from fullpose_server.runtime.supervisor.errors import RequestTooLargeError, RigUnreachableError
 from fullpose_server.session.lease import LeaseToken
-
-
-class RequestTooLargeError(ValueError):
-    """A request that the rig process would not read whole: its size and the most that is read are in the message."""
-
-
-class RigUnreachableError(Exception):
-    """The rig process does not answer: gone, or stuck. The message says which."""
 
 
 class ControlLink:
@@ -105,3 +98,28 @@ class ControlLink:
         for waiting in self._waiting.values():
             if not waiting.done():
                 waiting.set_exception(RigUnreachableError("the rig process ended before it answered"))
+
+
+class StandingLink:
+    """The link to whatever process of a rig runs, opened anew where it has broken."""
+
+    def __init__(self, paths: RigPaths) -> None:
+        self._paths = paths
+        self._link: ControlLink | None = None
+        self._opening = asyncio.Lock()
+
+    async def current(self) -> ControlLink:
+        """The link, open. Raises `RigUnreachableError`."""
+        async with self._opening:
+            if self._link is None or not self._link.open_for_requests:
+                link = ControlLink()
+                await link.open(self._paths)
+                if self._link is not None:
+                    await self._link.close()
+                self._link = link
+            return self._link
+
+    async def close(self) -> None:
+        """Close it; waiting requests raise. The next `current` opens it anew."""
+        if self._link is not None:
+            await self._link.close()

@@ -1,101 +1,196 @@
-"""Starting a rig process, and knowing how it ended.
+"""The life of a rig's process: spawned or adopted, watched, started anew where it dies, ended.
 
-Spawned, not a `Popen`: the rig process outlives the server that started it, by design, and a `Popen` that is dropped
-while its process runs takes that for a leak.
+The process outlives the server. A living one is found by its lock and adopted, session, lease, alarms and all. One
+that runs by other settings than ours is replaced where nothing is bound in it, else kept as it is. A pidfd tells at
+once when it dies; the next comes up disconnected and carries the alarm.
 """
 
 import asyncio
-import json
+import contextlib
+import logging
 import os
-import signal
-import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
-import fullpose
-import fullpose_server
-from fullpose_server.runtime.contract import config as configs
+from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.rig_paths import RigPaths
+from fullpose_server.runtime.contract.shared_memory import Shared, SharedError
+from fullpose_server.runtime.supervisor.control_link import StandingLink
+from fullpose_server.runtime.supervisor.errors import HostError, RigUnreachableError
+from fullpose_server.runtime.supervisor.heartbeat import Heartbeat
+from fullpose_server.runtime.supervisor.launcher import Launcher
+from fullpose_server.runtime.supervisor.process_view import ProcessView
+from fullpose_server.session.states import State
 
-START_S = 60.0  # with no kernel in the cache, compiling takes most of it
-# The process runs the very packages that run here, wherever they were found.
-_ROOTS = [str(Path(*package.__path__).resolve().parent) for package in (fullpose_server, fullpose)]
+log = logging.getLogger(__name__)
+REPLY_S = 5.0
+POLL_S = 0.005
+_END_S = 15.0
+_PUBLISH_S = 10.0
+_RESPAWNS = 3  # in a minute; then a person must look
+_RETRY_S = 1.0
 
 
-class HostError(Exception):
-    """The rig process cannot be started or reached; the message holds the end of its log where there is one."""
+class ProcessManager:
+    """Of one rig. Keeps `view` on the newest process, and `link` to it."""
 
-
-class Launcher:
-    """Starts the processes of one rig, one after another."""
-
-    def __init__(self, paths: RigPaths) -> None:
+    def __init__(self, config: RigConfig, paths: RigPaths, view: ProcessView, link: StandingLink) -> None:
+        self._config = config
         self._paths = paths
-        self._child = 0
-        self._ended: int | None = None
+        self._view = view
+        self._link = link
+        self._launcher = Launcher(paths)
+        self._adopted = False
+        self._pidfd = -1
+        self._respawned: list[float] = []
+        self._watch: asyncio.Task[None] | None = None
+        self._heartbeat: Heartbeat | None = None
 
-    async def spawn(self, config: RigConfig) -> int:
-        """Start a process with `config`; returns its pid when it is ready. Raises `HostError`."""
-        self._paths.notes.unlink(missing_ok=True)
-        self._paths.config.write_bytes(configs.encode(config))
-        paths = [*_ROOTS, *filter(None, [os.environ.get("PYTHONPATH")])]
-        # One BLAS thread: its pool would be locked into memory, and nothing in the loop uses it.
-        env = os.environ | {"PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-        child = self._child = self._started(env)
-        self._ended = None
-        deadline = time.monotonic() + START_S
-        while time.monotonic() < deadline:
-            if self.status(child) is not None:
-                raise HostError(f"the rig process of {config.name} ended at once:\n{self._log_end()}")
-            if self._paths.running() == child:
-                return child
-            await asyncio.sleep(0.02)
-        os.kill(child, signal.SIGKILL)
-        await self.reaped(child)
-        raise HostError(f"the rig process of {config.name} was not ready within {START_S:g} s:\n{self._log_end()}")
+    @property
+    def adopted(self) -> bool:
+        """Whether the first process was there already, and stayed."""
+        return self._adopted
 
-    def differences(self, config: RigConfig) -> list[str]:
-        """The settings in which the process that was started here last is not as `config` has it."""
-        wanted = json.loads(configs.encode(config))
+    def faults(self) -> list[str]:
+        """What of the supervision itself has failed; nothing while all is well."""
+        found = []
+        if self._watch is not None and self._watch.done():
+            found.append("its process is not watched any more")
+        if self._heartbeat is not None and not self._heartbeat.alive:
+            found.append("its process hears no heartbeat of the server")
+        return found
+
+    async def start(self) -> None:
+        """Spawn or adopt the process. Raises `HostError` where it does not come up."""
+        self._paths.prepare()
+        pid = self._paths.running()
+        self._adopted = pid is not None
+        if pid is None:
+            pid = await self._launcher.spawn(self._config)
+        await self._attach(pid)
+        if self._adopted:
+            await self._settle()
+        self._heartbeat = Heartbeat(self._view, self._config.name)
+        self._watch = asyncio.create_task(self._watch_on(), name=f"watch {self._config.name}")
+        self._watch.add_done_callback(self._watch_ended)
+
+    async def close(self, *, stop_rig: bool) -> None:
+        """Let go of the process; with `stop_rig` end it: E-stop if it moves, then exit."""
+        if self._watch is not None:
+            self._watch.cancel()
+            await asyncio.gather(self._watch, return_exceptions=True)
+            self._watch = None
+        heartbeat, self._heartbeat = self._heartbeat, None
         try:
-            given = json.loads(self._paths.config.read_bytes())
-        except (OSError, ValueError):
-            given = {}
-        names = (wanted.keys() | given.keys()) - {"after_loss"}
-        return sorted(name for name in names if wanted.get(name) != given.get(name))
+            if stop_rig and not self._view.dead:
+                await self._end()
+        finally:
+            await self._detach()
+            if heartbeat is not None:
+                heartbeat.stop()
 
-    def status(self, pid: int) -> int | None:
-        """How process `pid` ended (negative: by that signal); None while it lives, or where it is not ours to know."""
-        if not pid or pid != self._child:
-            return None
-        if self._ended is None:
-            found, status = os.waitpid(pid, os.WNOHANG)
-            if found:
-                self._ended = os.waitstatus_to_exitcode(status)
-        return self._ended
+    async def _attach(self, pid: int) -> None:
+        try:
+            shared = Shared(self._paths.memory())
+            await self._link.current()
+            self._pidfd = os.pidfd_open(pid)
+            deadline = time.monotonic() + _PUBLISH_S
+            while shared.snapshot(wait=False) is None:  # ready, and about to say so
+                if time.monotonic() > deadline:
+                    raise SharedError("it publishes nothing")
+                await asyncio.sleep(0.005)
+        except (OSError, SharedError, RigUnreachableError) as cause:
+            await self._detach()
+            raise HostError(f"the rig process {pid} of {self._config.name} cannot be adopted ({cause})") from cause
+        shared.header["server_pid"] = os.getpid()
+        shared.header["server_beat_ns"] = time.monotonic_ns()
+        asyncio.get_running_loop().add_reader(self._pidfd, self._died)
+        self._view.attach(pid, shared)
 
-    async def reaped(self, pid: int) -> None:
-        """Wait until `pid`, which is at its end, is gone; returns at once where it is not our child."""
-        if pid and pid == self._child and self.status(pid) is None:
-            _, status = await asyncio.to_thread(os.waitpid, pid, 0)
-            self._ended = os.waitstatus_to_exitcode(status)
+    async def _detach(self) -> None:
+        if self._pidfd >= 0:
+            asyncio.get_running_loop().remove_reader(self._pidfd)
+            os.close(self._pidfd)
+            self._pidfd = -1
+        await self._link.close()
 
-    def _started(self, env: dict[str, str]) -> int:
-        command = [sys.executable, "-m", "fullpose_server.runtime.loop.process", "--config", str(self._paths.config)]
-        with self._paths.log.open("ab") as log, Path(os.devnull).open("rb") as nothing:
-            return os.posix_spawn(
-                sys.executable,
-                command,
-                env,
-                file_actions=[
-                    (os.POSIX_SPAWN_DUP2, nothing.fileno(), 0),
-                    (os.POSIX_SPAWN_DUP2, log.fileno(), 1),
-                    (os.POSIX_SPAWN_DUP2, log.fileno(), 2),
-                ],
-                setsid=True,  # a Ctrl-C at the server's terminal must not reach a moving rig
-                setsigdef=[signal.SIGPIPE, signal.SIGXFSZ],  # which Python ignores, and an ignored signal is inherited
-            )
+    def _died(self) -> None:
+        asyncio.get_running_loop().remove_reader(self._pidfd)
+        self._view.died()
 
-    def _log_end(self) -> str:
-        return self._paths.log.read_text("utf-8", "replace")[-2000:]
+    async def _settle(self) -> None:
+        """Replace an adopted process that runs by other settings, where nothing is bound in it; else say so."""
+        other = self._launcher.differences(self._config)
+        if not other:
+            return
+        rig, names, published = self._config.name, ", ".join(other), self._view.published()
+        if published.state not in (State.DISCONNECTED, State.IDLE) or published.alarms:
+            log.warning("rig %s was adopted with other settings than the server's (%s): they stay", rig, names)
+            return
+        log.info("rig %s ran by other settings than the server's (%s): it is started anew", rig, names)
+        try:
+            await self._end()
+        finally:
+            await self._detach()
+        self._adopted = False
+        await self._attach(await self._launcher.spawn(self._config))
+
+    async def _end(self) -> None:
+        deadline = time.monotonic() + _END_S
+        pid = self._view.pid
+        while self._launcher.status(pid) is None and self._paths.running() == pid:
+            # Refused while the rig moves, and answered with an E-stop: ask again when it is at rest.
+            with contextlib.suppress(RigUnreachableError):
+                await (await self._link.current()).request("exit", "server", timeout_s=REPLY_S)
+            await asyncio.sleep(0.05)
+            if time.monotonic() > deadline:
+                raise HostError(f"rig process {pid} of {self._config.name} does not end")
+        await self._view.wait_dead()  # it gives its lock up a little before it is gone
+        await self._launcher.reaped(pid)
+
+    async def _watch_on(self) -> None:
+        while True:
+            await asyncio.sleep(POLL_S)
+            if not self._view.dead:
+                self._view.poll()
+                continue
+            try:
+                await self._revive()
+            except (HostError, OSError) as cause:
+                log.warning("rig %s is not started anew: %s", self._config.name, cause)
+                await asyncio.to_thread(_append, self._paths.log, f"server: {cause}\n")
+                await asyncio.sleep(_RETRY_S)
+
+    def _watch_ended(self, watch: asyncio.Task[None]) -> None:
+        if not watch.cancelled():
+            log.error("rig %s is not watched any more", self._config.name, exc_info=watch.exception())
+
+    async def _revive(self) -> None:
+        """Start another process in place of the dead one, with the cause as its first alarm."""
+        now = time.monotonic()
+        self._respawned = [t for t in self._respawned if now - t < 60.0]
+        if len(self._respawned) >= _RESPAWNS:
+            return
+        self._respawned.append(now)
+        lost = _loss(self._view.published(), self._launcher.status(self._view.pid))
+        await self._detach()
+        pid = self._paths.running()  # one that came up and could not be reached
+        if pid is None:
+            pid = await self._launcher.spawn(replace(self._config, after_loss=lost))
+        await self._attach(pid)
+
+
+def _loss(last: messages.Published, code: int | None) -> str:
+    """What is said of a process that died; `code` is how, where that is known (negative: by that signal)."""
+    how = ""
+    if code is not None:
+        how = f" (signal {-code})" if code < 0 else f" (exit status {code})"
+    why = "".join(f" ({a.message})" for a in last.alarms if a.code == "internal_error")
+    return f"the rig process died{how}{why} while {last.state}; the drive brakes by its own watchdog"
+
+
+def _append(path: Path, text: str) -> None:
+    with contextlib.suppress(OSError), path.open("a") as file:  # a full disk, say: the server's own log has it too
+        file.write(text)

@@ -9,7 +9,7 @@ from pathlib import Path
 from fullpose_server.formats.rig_file import RigStore
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.rig_paths import RigPaths
-from fullpose_server.runtime.supervisor.process_manager import HostError
+from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import IN_MOTION
 
@@ -25,7 +25,7 @@ class RigHosts:
         self._config = config
         self._directory = directory
         self._hosts: dict[str, RigHost] = {}
-        self._locks: dict[str, asyncio.Lock] = {}
+        self._starting: dict[str, asyncio.Task[RigHost]] = {}
         self._appeared = asyncio.Event()
 
     def get(self, rig: str) -> RigHost | None:
@@ -43,15 +43,28 @@ class RigHosts:
 
     async def ensure(self, rig: str) -> RigHost:
         """The host of a rig, started where there is none. Raises `NotFoundError`, `HostError`."""
-        async with self._locks.setdefault(rig, asyncio.Lock()):
-            host = self._hosts.get(rig)
-            if host is None:
-                host = RigHost(await asyncio.to_thread(self._config, rig))
-                await host.start()
-                self._hosts[rig] = host
-                appeared, self._appeared = self._appeared, asyncio.Event()
-                appeared.set()
+        host = self._hosts.get(rig)
+        if host is not None:
             return host
+        starting = self._starting.get(rig)
+        if starting is None:
+            starting = self._starting[rig] = asyncio.create_task(self._start(rig), name=f"start {rig}")
+            starting.add_done_callback(lambda task: self._started(rig, task))
+        # Shielded: who asked may go, and the start is not left half done.
+        return await asyncio.shield(starting)
+
+    async def _start(self, rig: str) -> RigHost:
+        host = RigHost(await asyncio.to_thread(self._config, rig))
+        await host.start()
+        self._hosts[rig] = host
+        appeared, self._appeared = self._appeared, asyncio.Event()
+        appeared.set()
+        return host
+
+    def _started(self, rig: str, task: asyncio.Task[RigHost]) -> None:
+        del self._starting[rig]
+        if not task.cancelled():
+            task.exception()  # told to who asked, where anybody is left
 
     async def wait(self, rig: str) -> RigHost:
         """The host of a rig, once there is one."""
@@ -71,6 +84,7 @@ class RigHosts:
 
     async def close(self, *, stop_rigs: bool) -> None:
         """Let go of all, ending their processes with `stop_rigs`."""
+        await asyncio.gather(*self._starting.values(), return_exceptions=True)
         closing = [_close(host, stop_rigs) for host in self._hosts.values()]
         for result in await asyncio.gather(*closing, return_exceptions=True):
             if isinstance(result, BaseException):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fullpose_server.runtime.contract.config import GuardConfig, Tolerance
+from fullpose_server.runtime.contract.messages import Snapshot
 from fullpose_server.runtime.contract.shared_memory import SAMPLES, Shared
 from fullpose_server.runtime.contract.telemetry import SAMPLE
 from fullpose_server.runtime.recording.mcap_reader import (
@@ -20,6 +21,7 @@ from fullpose_server.runtime.recording.mcap_reader import (
 from fullpose_server.runtime.recording.recorder import Recorder
 from fullpose_server.session.states import STATES
 from tests.fullpose_server.runtime.rigs import config_of, hosted, plan_of, written
+from tests.support.waiting import answered, soon
 
 START_NS = 1_000_000_000
 OFF = Tolerance(None, None)
@@ -207,21 +209,20 @@ def test_a_fault_of_a_move_is_kept_though_nothing_flew(tmp_path: Path, kind: str
         plan = written(tmp_path / "plan", plan_of(config.rig, 1.0))
         async with hosted(config) as (host, operator):
             await operator.arm(plan)
-            for _ in range(3000):  # to and fro, until it fails
+
+            async def moved_on() -> Snapshot | None:  # to and fro, until it fails
                 snapshot = host.snapshot()
                 if snapshot.state in ("faulted", "disconnected"):
-                    break
+                    return snapshot
                 if snapshot.state == "armed":
                     way = 50.0 if snapshot.pose_deg[3] < 0.0 else -50.0
                     await operator.say("move", target_deg=[0.0, 0.0, 0.0, way])
                 await host.lease("renew", operator.who)
-                await asyncio.sleep(0.01)
+                return None
+
+            snapshot = await answered(moved_on, every_s=0.01)
             assert code in [alarm.code for alarm in snapshot.alarms]
-            for _ in range(600):
-                records = list((tmp_path / "runs").glob("*"))
-                if records and is_whole(records[0]):
-                    break
-                await asyncio.sleep(0.05)
+            await soon(lambda: any(is_whole(path) for path in (tmp_path / "runs").glob("*.mcap")))
         (record,) = (tmp_path / "runs").iterdir()
         assert "-test-incident-" in record.stem
         assert is_whole(record)

@@ -11,7 +11,8 @@ import pytest
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.loop.control_server import ControlServer
-from fullpose_server.runtime.supervisor.control_link import MAX_REQUEST, ControlLink, RequestTooLargeError
+from fullpose_server.runtime.supervisor.control_link import MAX_REQUEST, ControlLink
+from fullpose_server.runtime.supervisor.errors import RequestTooLargeError
 
 PATIENCE_S = 60.0
 
@@ -25,14 +26,16 @@ async def linked(folder: Path) -> AsyncIterator[tuple[ControlLink, list[messages
         asked.append(request)
         return messages.Answer(request.id, messages.Reply(True, "idle", "idle", 0))
 
-    async def poll() -> None:
-        while True:
-            server.poll()
-            await asyncio.sleep(0.001)
+    loop = asyncio.get_running_loop()
+
+    def poll() -> None:
+        nonlocal polling
+        server.poll()
+        polling = loop.call_later(0.001, poll)
 
     paths = RigPaths(folder)
     server = ControlServer(paths, answer)
-    polling = asyncio.create_task(poll())
+    polling: asyncio.Handle = loop.call_soon(poll)
     link = ControlLink()
     try:
         await link.open(paths)
@@ -40,7 +43,6 @@ async def linked(folder: Path) -> AsyncIterator[tuple[ControlLink, list[messages
     finally:
         await link.close()
         polling.cancel()
-        await asyncio.gather(polling, return_exceptions=True)
         server.close()
 
 

@@ -1,16 +1,17 @@
 """A whole rig process, really running at 1 kHz on the simulated drive, through `RigHost`."""
 
 import asyncio
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from fullpose_server.runtime.supervisor.rig_client import RefusedError, RigHost
+from fullpose_server.runtime.supervisor.errors import RefusedError
+from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import STATES
-from tests.fullpose_server.runtime.rigs import Operator, config_of, hosted, plan_of, written
+from tests.fullpose_server.runtime.rigs import Operator, config_of, hosted, plan_of, ticked, written
+from tests.support.waiting import soon
 
 FLIGHT = ("running", "held")
 
@@ -39,7 +40,7 @@ def test_a_flight_of_ten_seconds_is_flown_recorded_and_nothing_is_lost(tmp_path:
             await operator.must("start")
             await operator.until("running")
             await operator.until("armed", "faulted")
-            await asyncio.sleep(0.3)
+            await soon(lambda: host.snapshot().health.recorder.run == "")  # the record is complete
             rows, lost = host.samples(since, 1 << 20)
             snapshot = host.snapshot()
             assert snapshot.state == "armed", snapshot.alarms
@@ -70,15 +71,15 @@ def test_hold_resume_stop_estop_reset(tmp_path: Path) -> None:
         plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
         async with hosted(config) as (host, operator):
             await operator.fly(plan)
-            await asyncio.sleep(2.0)
+            await ticked(host, 2.0)
             await operator.must("hold")
-            await asyncio.sleep(1.5)
+            await soon(lambda: (newest := host.latest()) is not None and not newest["demand_rate"].any())
             held = host.latest()
             assert held is not None
             assert held["path_scale"][0] == 0.0
             assert np.abs(held["demand_rate"]).max() == 0.0
             await operator.must("resume")
-            await asyncio.sleep(1.0)
+            await ticked(host, 1.0)
             reply = await host.stop("somebody without a lease")
             assert reply.ok
             await operator.until("armed")
@@ -89,7 +90,7 @@ def test_hold_resume_stop_estop_reset(tmp_path: Path) -> None:
 
             await operator.must("start")
             await operator.until("running")
-            await asyncio.sleep(1.5)
+            await ticked(host, 1.5)
             host.estop("somebody")
             snapshot = await operator.until("estopped")
             latched = [a for a in snapshot.alarms if a.severity != "warning"]  # a starved machine may warn of lateness
@@ -99,8 +100,7 @@ def test_hold_resume_stop_estop_reset(tmp_path: Path) -> None:
             assert refused.error.code == "illegal_command"
             assert (refused.error.state, refused.error.command) == ("estopped", "start")
             assert "reset" in refused.error.allowed
-            await asyncio.sleep(1.0)
-            unseen = await operator.say("reset")
+            unseen = await operator.at_rest("reset")
             assert unseen.error is not None
             assert unseen.error.code == "unacknowledged"
             await operator.recover()
@@ -187,15 +187,11 @@ def test_a_link_that_the_process_drops_is_opened_anew(tmp_path: Path) -> None:
     async def fly() -> None:
         async with hosted(config_of(tmp_path)) as (host, operator):
             await operator.take()
-            link = host._link
-            assert link is not None
+            link = await host._link.current()
             link._socket.send(b"no request")  # dropped for it, as is who does not read its answers
-            deadline = time.monotonic() + 5.0
-            while link.open_for_requests:
-                assert time.monotonic() < deadline
-                await asyncio.sleep(0.01)
+            await soon(lambda: not link.open_for_requests)
             await operator.must("connect")
-            assert host._link is not link
+            assert await host._link.current() is not link
             assert host.snapshot().state == "idle"
 
     asyncio.run(fly())
@@ -217,7 +213,7 @@ def test_a_rig_that_rests_on_a_limit_is_armed_again(tmp_path: Path) -> None:
                 await at_rest(host, operator)
                 await operator.must("disarm")
                 await operator.must("arm")
-                await asyncio.sleep(0.2)
+                await ticked(host, 0.2)
                 assert host.snapshot().state == "armed", host.snapshot().alarms
 
     asyncio.run(fly())
@@ -228,7 +224,7 @@ def test_a_frame_found_outside_its_range_is_told_and_may_come_back(tmp_path: Pat
         config = config_of(tmp_path, drive_options={"start_deg": [0.0, 0.0, 0.0, 61.0]})
         async with hosted(config) as (host, operator):
             await operator.arm(written(tmp_path / "plan", plan_of(config.rig, 0.5)))
-            await asyncio.sleep(0.2)
+            await ticked(host, 0.2)
             snapshot = host.snapshot()
             assert snapshot.state == "armed", snapshot.alarms
             (told,) = [a for a in snapshot.alarms if a.code == "outside_range"]

@@ -1,0 +1,34 @@
+"""The life of a rig's process when it cannot be started anew."""
+
+import asyncio
+import gc
+import os
+import signal
+import sys
+import warnings
+from pathlib import Path
+
+import pytest
+
+from tests.fullpose_server.runtime.rigs import config_of, hosted
+from tests.support.waiting import soon
+
+
+def test_a_start_anew_that_fails_is_told_in_the_rig_s_log_and_leaves_no_file_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def die() -> None:
+        config = config_of(tmp_path)
+        async with hosted(config) as (host, _):
+            log = config.directory / "rig.log"
+            monkeypatch.setattr(sys, "executable", "/bin/false")
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always")
+                os.kill(host.snapshot().health.rig_pid, signal.SIGKILL)
+                await soon(lambda: "server: the rig process of test ended at once" in log.read_text("utf-8"))
+                gc.collect()
+            assert [str(warning.message) for warning in told if warning.category is ResourceWarning] == []
+            assert host.faults() == []  # it is watched on
+            assert not host.snapshot().health.rig_alive
+
+    asyncio.run(die())
