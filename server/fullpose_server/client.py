@@ -4,6 +4,7 @@ import asyncio
 import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -26,14 +27,26 @@ class ClientError(Exception):
         self.problem = problem or {}
 
 
+@dataclass
+class _Lease:
+    """The lease of one rig, as this client knows it: its epoch, and the sequence of the last command."""
+
+    epoch: int = 0
+    sequence: int = 0
+
+    def next(self) -> dict[str, int]:
+        """What the next command shows."""
+        self.sequence += 1
+        return {"epoch": self.epoch, "sequence": self.sequence}
+
+
 class Client:
     """One server, one operator. Use `async with`; raises `ClientError` from every call."""
 
     def __init__(self, url: str, name: str = "python", timeout_s: float = 30.0) -> None:
         self.url = url.rstrip("/")
         self.name = name
-        self._epoch = 0
-        self._sequence = 0
+        self._leases: dict[str, _Lease] = {}  # by rig: each rig has epochs of its own
         self._http = httpx.AsyncClient(
             base_url=self.url + API, headers={"X-Fullpose-Client": name}, timeout=timeout_s, trust_env=False
         )
@@ -88,8 +101,8 @@ class Client:
     async def take_lease(self, rig: str, action: str = "take") -> dict[str, Any]:
         """Take (or takeover, request, renew) the lease; commands carry it from here on."""
         held = await self._object("POST", f"/rigs/{quote(rig)}/lease", json={"action": action})
-        if held["holder"] == self.name and held["epoch"] != self._epoch:
-            self._epoch, self._sequence = held["epoch"], held["sequence"]
+        if held["holder"] == self.name and held["epoch"] != self._lease(rig).epoch:
+            self._leases[rig] = _Lease(held["epoch"], held["sequence"])
         return held
 
     async def release_lease(self, rig: str) -> dict[str, Any]:
@@ -98,9 +111,7 @@ class Client:
 
     async def command(self, rig: str, command: str, **args: Any) -> dict[str, Any]:
         """Command the session under the lease."""
-        self._sequence += 1
-        lease = {"epoch": self._epoch, "sequence": self._sequence}
-        body = {"command": command, "args": args, "lease": lease}
+        body = {"command": command, "args": args, "lease": self._lease(rig).next()}
         return await self._object("POST", f"/rigs/{quote(rig)}/commands", json=body)
 
     async def stop(self, rig: str) -> dict[str, Any]:
@@ -140,8 +151,7 @@ class Client:
         """
         message: dict[str, Any] = {"type": "open"} | settings
         if load:
-            self._sequence += 1
-            message["lease"] = {"epoch": self._epoch, "sequence": self._sequence}
+            message["lease"] = self._lease(rig).next()
         url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/live"
         name = {"X-Fullpose-Client": self.name}
         try:
@@ -153,6 +163,9 @@ class Client:
                 yield socket
         except (ConnectionClosed, InvalidHandshake, OSError) as error:
             raise ClientError(f"the live source of {rig} at {self.url} broke off: {error}") from error
+
+    def _lease(self, rig: str) -> "_Lease":
+        return self._leases.setdefault(rig, _Lease())
 
     async def _object(self, method: str, path: str, **content: Any) -> dict[str, Any]:
         answer: dict[str, Any] = await self._call(method, path, **content)

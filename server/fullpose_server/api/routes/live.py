@@ -5,12 +5,11 @@ ever. A source that goes, closed or silent, is lost for the rig process, which s
 """
 
 import asyncio
-import contextlib
 import math
 from typing import Any
 
 import msgspec
-from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from fastapi import APIRouter, WebSocket
 from pydantic import TypeAdapter
 
 from fullpose_server.api.commanding import answer, audit
@@ -26,6 +25,7 @@ from fullpose_server.api.schemas.live import (
     SampleStatus,
 )
 from fullpose_server.api.streams.live_link import LinkLostError, LiveLink, split
+from fullpose_server.api.streams.tasks import GoneError, close_for, send_bytes, send_text
 from fullpose_server.runtime.live.packets import Kind, LiveReply, LiveStatus, encode_sample
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
@@ -78,23 +78,22 @@ class _Source:
         self._binary = False
 
     async def run(self) -> None:
-        # RuntimeError: starlette's word for a closed socket.
-        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
-            tasks = [asyncio.create_task(self._take()), asyncio.create_task(self._answer())]
-            try:
-                await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-            finally:
-                for task in tasks:
-                    task.cancel()
-                ends = await asyncio.gather(*tasks, return_exceptions=True)
-            for end in ends:
-                if isinstance(end, LinkLostError):
-                    await self._tell(
-                        ApiError(503, "rig-process", f"{self._host.name}: the rig process is gone ({end})")
-                    )
-                    await self._socket.close(GONE)
-                elif isinstance(end, Exception):
-                    raise end
+        tasks = [
+            asyncio.create_task(self._take(), name="live samples"),
+            asyncio.create_task(self._answer(), name="live replies"),
+        ]
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for task in tasks:
+                task.cancel()
+            ends = await asyncio.gather(*tasks, return_exceptions=True)
+        for end in ends:
+            if isinstance(end, LinkLostError):
+                gone = ApiError(503, "rig-process", f"{self._host.name}: the rig process is gone ({end})")
+                await close_for(self._socket, _problem(gone), GONE)
+            elif isinstance(end, Exception) and not isinstance(end, GoneError):
+                await close_for(self._socket, _problem(end))
 
     async def _take(self) -> None:
         while True:
@@ -166,15 +165,19 @@ class _Source:
             for datagram in await self._link.replies():
                 reply, age = self._link.read(datagram)
                 if self._binary:
-                    await self._socket.send_bytes(datagram)
+                    await send_bytes(self._socket, datagram)
                 else:
-                    await self._socket.send_text(reply_json(reply, age))
+                    await send_text(self._socket, reply_json(reply, age))
 
     async def _say(self, message: Wire) -> None:
-        await self._socket.send_text(message.model_dump_json())
+        await send_text(self._socket, message.model_dump_json())
 
     async def _tell(self, error: Exception) -> None:
-        await self._say(LiveProblem(problem=problem_of(error)))
+        await send_text(self._socket, _problem(error))
+
+
+def _problem(error: Exception) -> str:
+    return LiveProblem(problem=problem_of(error)).model_dump_json()
 
 
 def reply_json(reply: LiveReply, age_s: float | None) -> str:

@@ -5,13 +5,12 @@ that reads too slowly finds, when it is ready again, the newest samples, and is 
 """
 
 import asyncio
-import contextlib
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable
 from typing import Protocol
 
-from fastapi import WebSocket, WebSocketDisconnect
-from pydantic import TypeAdapter
+from fastapi import WebSocket
+from pydantic import TypeAdapter, ValidationError
 
 from fullpose_server.api.errors import ApiError, problem_of
 from fullpose_server.api.schemas.base import Wire
@@ -26,6 +25,7 @@ from fullpose_server.api.schemas.stream import (
 )
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.api.streams.frames import FrameMaker
+from fullpose_server.api.streams.tasks import GoneError, Tasks, close_for, send_bytes, send_text
 
 _INCOMING: TypeAdapter[StreamIn] = TypeAdapter(StreamIn)
 
@@ -56,22 +56,27 @@ class StreamClient:
         self._socket = socket
         self._source = source
         self._wanted: Subscribe | None = None
-        self._tasks: list[asyncio.Task[None]] = []
-        self._answers: set[asyncio.Task[None]] = set()
+        self._sending = Tasks(self._failed)
+        self._answers = Tasks(self._failed)
 
     async def run(self) -> None:
-        """hello, then what the client subscribes to."""
-        # RuntimeError: starlette's word for a closed socket.
-        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
-            await self._socket.send_text(self._source.hello().model_dump_json(by_alias=True))
-            try:
-                while True:
-                    await self._take(await self._socket.receive_text())
-            finally:
-                await self._end_tasks()
-
-    async def _take(self, text: str) -> None:
+        """hello, then what the client subscribes to. An error nobody planned for is told and logged, and ends it."""
         try:
+            await self._say(self._source.hello(), by_alias=True)
+            while (frame := await self._socket.receive())["type"] != "websocket.disconnect":
+                await self._take(frame.get("text"))
+        except GoneError:
+            pass
+        except Exception as error:  # noqa: BLE001 - logged by problem_of
+            await self._failed(error)
+        finally:
+            await self._sending.end()
+            await self._answers.finished()  # done and audited, whoever listens
+
+    async def _take(self, text: str | None) -> None:
+        try:
+            if text is None:
+                raise ApiError(422, "validation", "expected a JSON message in a text frame, this one is binary")
             message = _INCOMING.validate_json(text)
             if isinstance(message, Playback):
                 answer: Wire = self._source.control(message)
@@ -83,51 +88,43 @@ class StreamClient:
                 return
             elif isinstance(message, StopNow):
                 # The answer waits for the rig's loop; what the client says next does not wait for the answer.
-                answering = asyncio.create_task(self._answer(self._source.stop(message)))
-                self._answers.add(answering)
-                answering.add_done_callback(self._answers.discard)
+                stopping = self._source.stop(message)
+                self._answers.start(lambda: self._answer(stopping), "answer to stop")
                 return
             else:
                 answer = Pong(t=message.t, server_time=time.time())
-        except (ValueError, ApiError) as error:
+        except (ValidationError, ApiError) as error:
             answer = StreamProblem(problem=problem_of(error))
-        await self._socket.send_text(answer.model_dump_json())
+        await self._say(answer)
 
     async def _answer(self, work: Awaitable[Wire]) -> None:
         try:
             answer = await work
         except ApiError as error:
             answer = StreamProblem(problem=problem_of(error))
-        with contextlib.suppress(WebSocketDisconnect, RuntimeError, OSError):  # done and audited, whoever listens
-            await self._socket.send_text(answer.model_dump_json())
+        await self._say(answer)
 
     async def _begin(self, *, again: bool = False) -> None:
-        await self._end_tasks()
+        await self._sending.end()
         wanted = self._wanted
         if wanted is None:
             return
         # Control and data have a task each: a session's change never waits for telemetry to be read.
         if "session" in wanted.topics:
-            self._tasks.append(asyncio.create_task(self._guarded(self._sessions)))
+            self._sending.start(self._sessions, "stream of the session")
         if "telemetry" in wanted.topics:
-            self._tasks.append(asyncio.create_task(self._guarded(lambda: self._telemetry(wanted, again=again))))
+            self._sending.start(lambda: self._telemetry(wanted, again=again), "stream of telemetry")
 
-    async def _guarded(self, work: Callable[[], Awaitable[None]]) -> None:
-        try:
-            await work()
-        except (WebSocketDisconnect, RuntimeError, OSError):
-            with contextlib.suppress(RuntimeError):
-                await self._socket.close()  # wakes the reader, which ends the client
+    async def _failed(self, error: Exception) -> None:
+        """Tell why nothing more will come, and close: the reader wakes, and ends the client."""
+        await close_for(self._socket, StreamProblem(problem=problem_of(error)).model_dump_json())
 
-    async def _end_tasks(self) -> None:
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
-        self._tasks = []
+    async def _say(self, message: Wire, *, by_alias: bool = False) -> None:
+        await send_text(self._socket, message.model_dump_json(by_alias=by_alias))
 
     async def _sessions(self) -> None:
         async for change in self._source.changes():
-            await self._socket.send_text(change)
+            await send_text(self._socket, change)
 
     async def _telemetry(self, wanted: Subscribe, *, again: bool) -> None:
         source = await self._source.samples()
@@ -139,9 +136,9 @@ class StreamClient:
             await source.round_robin.turn()
             for frame in frames.take():
                 if isinstance(frame, bytes):
-                    await self._socket.send_bytes(frame)
+                    await send_bytes(self._socket, frame)
                 else:
-                    await self._socket.send_text(frame)
+                    await send_text(self._socket, frame)
             due += period
             late = loop.time() - due
             if late > period:

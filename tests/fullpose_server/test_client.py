@@ -1,0 +1,49 @@
+"""The client's side of the lease, against a server that is made up: two rigs, each with epochs of its own."""
+
+import asyncio
+import json
+from typing import Any
+
+import httpx
+import pytest
+
+from fullpose_server.client import Client
+
+EPOCHS = {"one": 7, "two": 3}
+
+
+@pytest.fixture
+def shown(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, dict[str, Any]]]:
+    """(rig, lease) of every command that the server is sent."""
+    seen: list[tuple[str, dict[str, Any]]] = []
+
+    async def answer(_: httpx.AsyncClient, method: str, url: str, **content: Any) -> httpx.Response:
+        rig = url.split("/")[2]
+        if url.endswith("/lease"):
+            held = {"holder": "ann", "epoch": EPOCHS[rig], "sequence": 10, "expires_s": 5.0, "requested_by": []}
+            return httpx.Response(200, json=held)
+        seen.append((rig, content["json"]["lease"]))
+        return httpx.Response(200, text=json.dumps({"command": content["json"]["command"], "method": method}))
+
+    monkeypatch.setattr(httpx.AsyncClient, "request", answer)
+    return seen
+
+
+def test_each_rig_has_a_lease_of_its_own(shown: list[tuple[str, dict[str, Any]]]) -> None:
+    async def operate() -> None:
+        async with Client("http://127.0.0.1:1", name="ann") as client:
+            await client.take_lease("one")
+            await client.command("one", "connect")
+            await client.take_lease("two")
+            await client.command("two", "connect")
+            await client.command("one", "arm")
+            await client.take_lease("one", "renew")
+            await client.command("one", "start")
+
+    asyncio.run(operate())
+    assert shown == [
+        ("one", {"epoch": 7, "sequence": 11}),
+        ("two", {"epoch": 3, "sequence": 11}),
+        ("one", {"epoch": 7, "sequence": 12}),
+        ("one", {"epoch": 7, "sequence": 13}),
+    ]
