@@ -34,10 +34,6 @@ SLEEPING = (
     "tests/fullpose_server/planning/test_plan_queue.py",
     "tests/fullpose_server/runtime/live/test_preview_stepper.py",
     "tests/fullpose_server/runtime/live/test_source.py",
-    "tests/fullpose_server/runtime/recording/test_recorder.py",
-    "tests/fullpose_server/runtime/rigs.py",
-    "tests/fullpose_server/runtime/supervisor/test_control_link.py",
-    "tests/fullpose_server/runtime/supervisor/test_rig_client.py",
 )
 
 

@@ -99,7 +99,7 @@ def replayed_session(rig: str, playback: RunPlayback, row: Any) -> SessionOut:
     a, b, c, d = row["measured"].tolist()
     return session.model_copy(
         update={
-            "state": STATES[row["state"]].value,
+            "state": STATES[row["state"]],
             "revision": int(row["revision"]),
             "allowed": [],
             "lease": session.lease.model_copy(update={"holder": playback.who or None}),
