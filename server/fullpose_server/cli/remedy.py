@@ -43,18 +43,18 @@ def remedy(
     from fullpose_server.formats.output_file import write_solution, write_text
     from fullpose_server.formats.report import make_report, margins_report, verdict_report
     from fullpose_server.formats.rig_file import find_rig
-    from fullpose_server.planning.remedy import check_kind, find_remedy
+    from fullpose_server.planning.remedy import find_remedy
+    from fullpose_server.planning.remedy_request import RemedyRequest
 
     chosen = find_rig(rig).rig
-    check_kind(kind, frame, limit, chosen)
+    asked = RemedyRequest(kind, frame, limit)
+    asked.check(chosen)
     check_outputs({"--out": out, "--report": report}, flight, rig)
     read = read_flight(flight, convention, chosen, start)
     attitude = dcm_from_quaternion(read.q)
     with progress_bar(kind) as progress:
         try:
-            found = find_remedy(
-                kind, read.time, attitude, chosen, frame=frame, limit=limit, start=read.start, progress=progress
-            )
+            found = find_remedy(asked, read.time, attitude, chosen, start=read.start, progress=progress)
         except NoRemedyError as error:
             fail(f"{flight}: {error}", NOT_FEASIBLE)
     done = found.remedy

@@ -159,9 +159,8 @@ def _limited_by(solution: Solution) -> list[dict[str, Any]]:
     codes, counts = np.unique(solution.limited[solution.limited > 0], return_counts=True)
     rows = []
     for code, count in sorted(zip(codes, counts, strict=True), key=lambda pair: -int(pair[1])):
-        name = limited_name(int(code))
-        assert name is not None
-        rows.append({"frame": name[0], "limit": name[1], "samples": int(count)})
+        if name := limited_name(int(code)):
+            rows.append({"frame": name[0], "limit": name[1], "samples": int(count)})
     return rows
 
 

@@ -24,6 +24,7 @@ from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan,
 from fullpose_server.formats.report import make_report, margins_report, verdict_report, why_infeasible
 from fullpose_server.planning.plan_request import PlanRequest
 from fullpose_server.planning.remedy import find_remedy
+from fullpose_server.planning.remedy_request import RemedyRequest
 from fullpose_server.store.trajectories import read_arrays
 
 Progress = Callable[[str, int, int], None]  # phase, done, total
@@ -129,12 +130,10 @@ def _remedied(
     """The flight, changed until it fits; solved by the planner whatever the method of the plan it is a remedy of."""
     asked = request.remedy or {}
     found = find_remedy(
-        asked["kind"],
+        RemedyRequest(asked["kind"], asked.get("frame"), asked.get("limit")),
         at,
         attitude,
         request.rig,
-        frame=asked.get("frame"),
-        limit=asked.get("limit"),
         start=start,
         options=options,
         progress=tell,

@@ -3,18 +3,15 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any
 
 from fullpose._typing import Array
 from fullpose.plan import PlanOptions
 from fullpose.plan.remedies import NOTHING, Remedy, offset, relax, slow_down
-from fullpose.rig import FRAMES, LIMITS, Rig
-from fullpose_server.errors import NoRemedyError, ServerError
+from fullpose.rig import FRAMES, Rig
+from fullpose_server.errors import NoRemedyError
 from fullpose_server.formats.report import UNITS
-from fullpose_server.planning.plan_request import check_frame
-
-RemedyKind = Literal["slow_down", "heading_offset", "mounting_offset", "relax"]
-KINDS: tuple[str, ...] = get_args(RemedyKind)
+from fullpose_server.planning.remedy_request import RemedyRequest
 
 
 @dataclass(frozen=True)
@@ -26,24 +23,23 @@ class Found:
 
 
 def find_remedy(
-    kind: str,
+    asked: RemedyRequest,
     time: Array,
     attitude: Array,
     rig: Rig,
     *,
-    frame: str | None = None,
-    limit: str | None = None,
     start: Array | None = None,
     options: PlanOptions | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Found:
-    """Search the remedy of that kind for time (n,) [s], attitude (n, 3, 3); with `relax`, of one frame or limit alone.
+    """Search the remedy that is asked for, for time (n,) [s], attitude (n, 3, 3).
 
     `described`: kind, what, value, unit, statement, sufficient, alternatives. A remedy that does not suffice is
     returned too, but for `relax`, which raises `NoRemedyError`. A flight that fits as it is is returned so, of every
     kind. Raises `SolverError`, `ServerError` for names that are none.
     """
-    check_kind(kind, frame, limit, rig)
+    asked.check(rig)
+    kind, frame, limit = asked.kind, asked.frame, asked.limit
     match kind:
         case "slow_down":
             found = [slow_down(time, attitude, rig, start, options, progress)]
@@ -87,17 +83,3 @@ def _described(kind: str, remedy: Remedy, rig: Rig) -> dict[str, Any]:
 
 def _range(low: float, high: float) -> str:
     return f"{math.degrees(low):.4g}..{math.degrees(high):.4g}"
-
-
-def check_kind(kind: str, frame: str | None, limit: str | None, rig: Rig) -> None:
-    """Raise `ServerError` for a kind that is none, or a frame or limit that is none or that the kind has no use for.
-
-    `InputError` for a frame that the rig has not.
-    """
-    if kind not in KINDS:
-        raise ServerError(f"remedy {kind!r}: expected one of {', '.join(KINDS)}")
-    if kind != "relax" and (frame is not None or limit is not None):
-        raise ServerError(f"remedy {kind} has no frame and no limit: they are for relax")
-    check_frame(frame, rig)
-    if limit is not None and limit not in LIMITS:
-        raise ServerError(f"limit {limit!r}: expected one of {', '.join(LIMITS)}")

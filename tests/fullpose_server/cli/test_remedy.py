@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from fullpose.errors import InputError
 from fullpose_server.cli import build
-from fullpose_server.planning.remedy import KINDS
+from fullpose_server.planning.remedy_request import KINDS
 
 FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 100},{10 * (k / 40) ** 2},0,0\n" for k in range(40))
 

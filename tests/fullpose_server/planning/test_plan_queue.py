@@ -11,7 +11,9 @@ import pytest
 from fullpose_server.errors import TransitionError
 from fullpose_server.formats.plan_folder import read_plan
 from fullpose_server.planning.plan_queue import PlanQueue
+from fullpose_server.store.jobs import JobStatus
 from tests.support.stores import Stores
+from tests.support.waiting import until
 
 SLOW = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(
     f"{k / 10},{20 * np.sin(k / 20)},{10 * np.sin(k / 30)},{5 * np.sin(k / 25)}\n" for k in range(301)
@@ -31,20 +33,15 @@ def run(stores: Stores, work: Callable[[PlanQueue], Awaitable[None]]) -> None:
 
 
 async def ended(stores: Stores, plan: str) -> str:
-    for _ in range(3000):
-        status = stores.plans.get(plan).status
-        if status not in ("queued", "running"):
-            return status
-        await asyncio.sleep(0.02)
-    raise AssertionError(f"plan {plan} does not end")
+    def status() -> str | None:
+        now = JobStatus(stores.plans.get(plan).status)
+        return now.value if now.finished else None
+
+    return await asyncio.to_thread(until, status)
 
 
 async def begun(queue: PlanQueue, plan: str) -> None:
-    for _ in range(60_000):
-        if queue.progress(plan) is not None:
-            return
-        await asyncio.sleep(0.001)
-    raise AssertionError(f"plan {plan} does not begin")
+    await asyncio.to_thread(until, lambda: queue.progress(plan), every_s=0.001)
 
 
 def test_a_plan_is_made_with_leads_and_report(stores: Stores) -> None:

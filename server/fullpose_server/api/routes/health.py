@@ -44,6 +44,8 @@ def _wrong(services: Services) -> list[str]:
     found = []
     if services.queue.status == "stopped":
         found.append("the planner has stopped")
+    if services.comparisons.status == "stopped":
+        found.append("comparisons are made no more")
     for host in services.hosts.all():
         state = host.snapshot().health
         if not state.rig_alive:

@@ -1,7 +1,7 @@
 """Plans, their reports and jobs on the wire."""
 
 from datetime import datetime
-from typing import Literal, Self
+from typing import Self
 
 from pydantic import Field, model_validator
 
@@ -15,6 +15,7 @@ from fullpose_server.api.schemas.base import (
     Sha256,
     Wire,
 )
+from fullpose_server.planning.remedy_request import RemedyKind
 from fullpose_server.store.jobs import JobStatus
 
 OptionValue = bool | int | float | str
@@ -151,9 +152,6 @@ class JobErrorOut(Wire):
     code: str
     message: str
     errors: list[FieldProblem] = Field(default=[])
-
-
-RemedyKind = Literal["slow_down", "heading_offset", "mounting_offset", "relax"]
 
 
 class RemedyIn(Wire):
