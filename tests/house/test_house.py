@@ -26,12 +26,11 @@ LONG_KERNELS = {
     "search",
     "search_start",
 }
-WIDE = 38
+WIDE = 37
 LONG_FILES = 17
 CIRCLES = ("fullpose_server.runtime.live", "fullpose_server.runtime.loop")
 SLEEPING = (
     "tests/fullpose_server/drives/test_udp.py",
-    "tests/fullpose_server/planning/test_plan_queue.py",
     "tests/fullpose_server/runtime/live/test_preview_stepper.py",
     "tests/fullpose_server/runtime/live/test_source.py",
 )
