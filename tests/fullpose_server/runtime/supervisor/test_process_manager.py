@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.supervisor.launcher import Launcher
 from tests.fullpose_server.runtime.rigs import config_of, hosted
 from tests.support.waiting import soon
 
@@ -30,5 +32,25 @@ def test_a_start_anew_that_fails_is_told_in_the_rig_s_log_and_leaves_no_file_ope
             assert [str(warning.message) for warning in told if warning.category is ResourceWarning] == []
             assert host.faults() == []  # it is watched on
             assert not host.snapshot().health.rig_alive
+
+    asyncio.run(die())
+
+
+def test_a_watch_that_ends_by_an_error_of_ours_is_told_in_the_log_and_as_a_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def wrong(_: Launcher, config: RigConfig) -> int:
+        raise KeyError(config.name)
+
+    async def die() -> None:
+        async with hosted(config_of(tmp_path)) as (host, _):
+            assert host.faults() == []
+            monkeypatch.setattr(Launcher, "spawn", wrong)
+            os.kill(host.snapshot().health.rig_pid, signal.SIGKILL)
+            assert await soon(host.faults) == ["its process is not watched any more"]
+        (told,) = (record for record in caplog.records if record.levelname == "ERROR")
+        assert told.getMessage() == "rig test is not watched any more"
+        assert told.exc_info is not None
+        assert told.exc_info[0] is KeyError
 
     asyncio.run(die())
