@@ -5,24 +5,16 @@ what a table cannot say: who may command, which plan is bound to which rig, and 
 """
 
 from dataclasses import dataclass
+from typing import Generic
 
 from fullpose_server.session import table
+from fullpose_server.session.actions import Given, L, M, Order, order_of
 from fullpose_server.session.alarms import Alarm, AlarmBook, Severity
+from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import BindingError, IllegalCommandError, NotReadyError, SessionError
 from fullpose_server.session.lease import Lease, LeaseBook, LeaseToken
 from fullpose_server.session.states import IN_MOTION, NEEDS_NO_LEASE, Action, Command, Event, State
 from fullpose_server.session.table import When
-
-
-@dataclass(frozen=True)
-class Binding:
-    """What `load` bound together: a plan (or a live source's settings), a rig, and their hashes."""
-
-    plan_id: str
-    plan_hash: str
-    rig: str
-    rig_hash: str
-    live: bool = False  # follows a live source: there is no path to start
 
 
 @dataclass(frozen=True)
@@ -58,8 +50,8 @@ class Silence:
         return _STAGES[before : self._stage]
 
 
-class SessionMachine:
-    """One rig's session. Not thread-safe: the rig process owns it."""
+class SessionMachine(Generic[L, M]):
+    """One rig's session, of loads L and moves M. Not thread-safe: the rig process owns it."""
 
     def __init__(self, rig: str, rig_hash: str, policy: SilencePolicy | None = None) -> None:
         policy = policy or SilencePolicy()
@@ -115,42 +107,43 @@ class SessionMachine:
         who: str,
         token: LeaseToken | None,
         now: float,
-        *,
-        binding: Binding | None = None,
-        alarms: frozenset[int] | None = None,
-    ) -> tuple[Action, ...]:
-        """Do `command`: returns the orders. `binding` goes with load and, where the caller names the pair, with arm.
+        given: Given[L, M] | None = None,
+    ) -> tuple[Order[L, M], ...]:
+        """Do `command` with what was made ready for it: returns the orders.
 
         Raises a `SessionError`, and changes nothing, where the table, the lease, the binding or standing alarms
-        forbid it. `alarms` are the numbers that `acknowledge` is about (None: all).
+        forbid it, or where what it needs was not given.
         """
+        given = given or Given()
         self.check(command, who, token, now)
         if command is Command.LOAD:
-            self._check_loadable(binding)
+            self._check_loadable(given.binding)
         if command is Command.ARM:
-            self.check_pair(binding)
+            self.check_pair(given.binding)
+        row = self._find(command)
+        orders = () if row is None else tuple(order_of(word, given, who) for word in row.actions)
         if command not in NEEDS_NO_LEASE:
             self._lease = self._lease.checked(who, token, now)
         if command is Command.ACKNOWLEDGE:
-            self.alarms = self.alarms.acknowledged(who, alarms)
+            self.alarms = self.alarms.acknowledged(who, given.alarms)
             if self.state not in table.LATCHED:
                 # No reset comes here: what stood on would take `first` from the next fault.
                 self.alarms = self.alarms.cleared()
             self.revision += 1
+        if row is None:  # `check` has looked: only what is done anywhere has no row
             return ()
-        row = self._find(command)
-        assert row is not None  # `check` has looked
         if command is Command.LOAD:
-            self.binding = binding
+            self.binding = given.binding
         if command is Command.CONNECT:
             self.linked = True
         if command is Command.START:
             self._flight = True
         if command in (Command.MOVE, Command.HOME, Command.JOG):
             self._flight = False
-        return self._go(row)
+        self._go(row)
+        return orders
 
-    def event(self, event: Event) -> tuple[Action, ...]:
+    def event(self, event: Event) -> tuple[Order[L, M], ...]:
         """Report what happened: returns the orders, none where the state has no use for it."""
         if event is Event.AT_REST and self.state in table.LATCHED:
             self.moving = False  # elsewhere the rows say what rest means
@@ -158,7 +151,12 @@ class SessionMachine:
             # A rig without link is out of our hands: its drive brakes by itself.
             self.linked = self.moving = False
         row = self._find(event)
-        return () if row is None else self._go(row)
+        if row is None:
+            return ()
+        nothing: Given[L, M] = Given()
+        orders = tuple(order_of(word, nothing, "") for word in row.actions)
+        self._go(row)
+        return orders
 
     def alarm(
         self,
@@ -210,7 +208,7 @@ class SessionMachine:
         holding = {When.FLIGHT if self._flight else When.MOVE, When.LINKED if self.linked else When.UNLINKED}
         return table.find(self.state, trigger, frozenset(holding))
 
-    def _go(self, row: table.Transition) -> tuple[Action, ...]:
+    def _go(self, row: table.Transition) -> None:
         self.state = row.target
         self.revision += 1
         if row.target in IN_MOTION:
@@ -221,7 +219,6 @@ class SessionMachine:
             self.alarms = self.alarms.cleared()
         if Action.UNBIND in row.actions:
             self.binding = None
-        return row.actions
 
     def _check_loadable(self, binding: Binding | None) -> None:
         if binding is None:

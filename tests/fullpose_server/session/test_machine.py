@@ -7,11 +7,13 @@ from typing import Any
 import pytest
 
 from fullpose_server.session import table
+from fullpose_server.session.actions import Bind, Given, GoLive, Move, Order, Position
 from fullpose_server.session.alarms import Severity
+from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import BindingError, IllegalCommandError, LeaseError, NotReadyError
 from fullpose_server.session.lease import LeaseToken
-from fullpose_server.session.machine import Binding, SessionMachine, SilencePolicy
-from fullpose_server.session.states import Action, Command, Event, State
+from fullpose_server.session.machine import SessionMachine, SilencePolicy
+from fullpose_server.session.states import Command, Event, State
 
 RIG = ("rig", "a" * 64)
 PLAN = Binding("p", "b" * 64, *RIG)
@@ -23,14 +25,19 @@ class Session:
     """A machine and one operator who counts."""
 
     def __init__(self) -> None:
-        self.machine = SessionMachine(*RIG, POLICY)
+        self.machine: SessionMachine[str, str] = SessionMachine(*RIG, POLICY)
         self.now = 100.0
         self.epoch = self.machine.lease_action("take", "anna", self.now).epoch
         self.sequence = 0
 
-    def say(self, command: Command, **rest: Any) -> tuple[Action, ...]:
+    def say(self, command: Command, **rest: Any) -> tuple[Order[str, str], ...]:
         self.sequence += 1
-        return self.machine.command(command, "anna", LeaseToken(self.epoch, self.sequence), self.now, **rest)
+        return self.machine.command(
+            command, "anna", LeaseToken(self.epoch, self.sequence), self.now, self.given(**rest)
+        )
+
+    def given(self, **rest: Any) -> Given[str, str]:
+        return Given(**{"load": "a load", "move": "a move"} | rest)
 
     def to(self, state: State) -> "Session":
         steps: list[Command | Event] = [Command.CONNECT, Command.LOAD, Command.ARM]
@@ -46,7 +53,7 @@ class Session:
         return self
 
 
-def memory(machine: SessionMachine) -> dict[str, Any]:
+def memory(machine: SessionMachine[str, str]) -> dict[str, Any]:
     """Everything a machine remembers."""
     return {key: value for key, value in vars(machine).items() if key != "_owner"}
 
@@ -108,7 +115,34 @@ def test_start_needs_a_plan_and_go_live_a_live_source() -> None:
     session.say(Command.ARM)
     with pytest.raises(NotReadyError, match="a plan loaded"):
         session.say(Command.START)
-    assert session.say(Command.GO_LIVE) == (Action.GO_LIVE,)
+    assert session.say(Command.GO_LIVE) == (GoLive("anna"),)
+
+
+def test_orders_carry_what_was_made_ready() -> None:
+    session = Session().to(State.IDLE)
+    assert session.say(Command.LOAD, binding=PLAN) == (Bind(PLAN, "a load"),)
+    session.say(Command.ARM)
+    assert session.say(Command.JOG, move="a jog") == (Move("a jog"),)
+    session.machine.event(Event.THERE)
+    assert session.say(Command.START) == (Position("a move", "anna"),)
+
+
+@pytest.mark.parametrize(
+    ("state", "command", "missing"),
+    [
+        (State.IDLE, Command.LOAD, {"binding": PLAN, "load": None}),
+        (State.ARMED, Command.START, {"move": None}),
+        (State.ARMED, Command.HOME, {"move": None}),
+    ],
+)
+def test_what_was_not_made_ready_is_refused_and_changes_nothing(
+    state: State, command: Command, missing: dict[str, Any]
+) -> None:
+    session = Session().to(state)
+    before = memory(session.machine)
+    with pytest.raises(NotReadyError):
+        session.say(command, **missing)
+    assert memory(session.machine) == before
 
 
 def test_positioning_for_a_flight_and_for_a_move_end_differently() -> None:

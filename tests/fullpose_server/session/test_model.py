@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from fullpose_server.session import table
+from fullpose_server.session.actions import Bind, Given, GoLive, Move, Order, Position
 from fullpose_server.session.alarms import HISTORY, Alarm, Severity
+from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import (
     BindingError,
     IllegalCommandError,
@@ -22,8 +24,8 @@ from fullpose_server.session.errors import (
     SessionError,
 )
 from fullpose_server.session.lease import Lease, LeaseToken
-from fullpose_server.session.machine import Binding, SessionMachine, SilencePolicy
-from fullpose_server.session.states import Action, Command, Event, State
+from fullpose_server.session.machine import SessionMachine, SilencePolicy
+from fullpose_server.session.states import Command, Event, State
 from fullpose_server.session.table import When
 
 C, S = Command, State
@@ -50,12 +52,15 @@ PEOPLE = st.sampled_from(["anna", "bert"])
 Refusal = tuple[type[SessionError], str]
 
 
+LOAD, MOVE = "a load", "a move"
+
+
 class Model(RuleBasedStateMachine):
     """Commands, events, leases, alarms and time at random; every rule foretells before it acts."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.machine = SessionMachine(*RIG, SilencePolicy(*(limit for limit, _ in STAGES)))
+        self.machine: SessionMachine[str, str] = SessionMachine(*RIG, SilencePolicy(*(limit for limit, _ in STAGES)))
         self.now = 0.0
         self.state = S.DISCONNECTED
         self.revision = 0
@@ -192,10 +197,10 @@ class Model(RuleBasedStateMachine):
         token = None if shown is None else LeaseToken(self.epoch + shown[0], self.sequence + shown[1])
         expected = self.command_refusal(command, who, token, binding)
         before = vars(self.machine).copy()
-        actions: tuple[Action, ...] = ()
+        actions: tuple[Order[str, str], ...] = ()
         given: Refusal | None = None
         try:
-            actions = self.machine.command(command, who, token, self.now, binding=binding, alarms=numbers)
+            actions = self.machine.command(command, who, token, self.now, Given(binding, LOAD, MOVE, numbers))
         except SessionError as refusal:
             given = (type(refusal), refusal.code)
         assert given == expected, command
@@ -264,8 +269,18 @@ class Model(RuleBasedStateMachine):
         else:
             self.go(row, actions)
 
-    def go(self, row: table.Transition, actions: tuple[Action, ...]) -> None:
-        assert actions == row.actions
+    def go(self, row: table.Transition, actions: tuple[Order[str, str], ...]) -> None:
+        assert tuple(order.word for order in actions) == row.actions
+        for order in actions:
+            match order:
+                case Bind():
+                    assert (order.binding, order.load) == (self.bound, LOAD)
+                case Position():
+                    assert (order.move, order.who) == (MOVE, self.holder)
+                case Move():
+                    assert order.move is MOVE
+                case GoLive():
+                    assert order.who == self.holder
         self.state = row.target
         self.revision += 1
         if self.state not in LATCHED:

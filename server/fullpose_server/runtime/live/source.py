@@ -6,10 +6,9 @@ extrapolated briefly, then the source counts as lost and the session stops the r
 """
 
 import math
-import os
-import socket
-import time
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -17,7 +16,6 @@ from fullpose._typing import Array
 from fullpose.rig import Rig
 from fullpose_server.runtime.contract.config import LiveConfig
 from fullpose_server.runtime.contract.messages import LiveHealth
-from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.live.buffer import LiveBuffer
 from fullpose_server.runtime.live.packets import (
     SAMPLE_SIZE,
@@ -36,18 +34,64 @@ _SOURCE_SILENT_S = 0.5  # then another may be followed in its place
 _DEG = 180.0 / math.pi
 
 
+class Link(Protocol):
+    """A datagram socket that never blocks, as the source sees it."""
+
+    def fileno(self) -> int:
+        """What tells it from the other links."""
+        ...
+
+    def recvfrom(self, size: int, /) -> tuple[bytes, Any]:
+        """A datagram and its sender; raises OSError where there is none."""
+        ...
+
+    def sendto(self, data: bytes, to: Any, /) -> int:
+        """Send a datagram; raises OSError where it cannot be."""
+        ...
+
+    def close(self) -> None:
+        """Close it."""
+        ...
+
+
+@dataclass(frozen=True)
+class ReadyLive:
+    """Settings with the step that was made for them."""
+
+    settings: LiveSettings
+    step: LiveStep
+
+
+class LiveView(NamedTuple):
+    """What a monitor sees of the source: ages, and counts since the session went live."""
+
+    acquired: bool  # the source's attitude was reached once
+    limited: bool
+    heard: bool  # the last tick had a sample to follow, however old
+    age_ms: float  # of that sample
+    plan_age_s: float  # of the planner's last word; nan where none plans
+    bad: int
+    dropped: int
+    clock_steps: int
+    strangers: int
+
+
 class LiveSource:
     """One rig's live source. `poll` every tick; `tick` while the session is live."""
 
-    def __init__(self, rig: Rig, config: LiveConfig, paths: RigPaths, dt: float) -> None:
+    def __init__(
+        self, rig: Rig, config: LiveConfig, dt: float, links: Sequence[Link], monotonic: Callable[[], float]
+    ) -> None:
+        """`links` bring samples every `dt` [s] and are closed with the source; `monotonic` tells the time [s]."""
         self._rig = rig
         self._config = config
         self._dt = dt
         self._buffer = LiveBuffer(config.delay_ms / 1e3)
         self._step: LiveStep | None = None
         self._settings = LiveSettings()
-        self._sockets: list[socket.socket] = []
-        self._waiting: list[tuple[LiveSample, bool, float, socket.socket, Any]] = []
+        self._links = tuple(links)
+        self._monotonic = monotonic
+        self._waiting: list[tuple[LiveSample, bool, float, Link, Any]] = []
         self._now = 0.0
         self._begun = 0.0
         self._following = False
@@ -61,35 +105,23 @@ class LiveSource:
         self.last_age_ms = 0.0
         self.rate_hz = 0.0
         self._rated = (0.0, 0)  # when, and samples by then
-        self._open(paths)
-
-    def _open(self, paths: RigPaths) -> None:
-        local = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
-        with paths.socket_address("live.sock") as address:
-            (paths.directory / "live.sock").unlink(missing_ok=True)
-            local.bind(address)
-        os.chmod(paths.directory / "live.sock", 0o600)  # noqa: PTH101
-        self._sockets.append(local)
-        if self._config.udp_port is not None:
-            udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
-            udp.bind((self._config.udp_host, self._config.udp_port))
-            self._sockets.append(udp)
-        for each in self._sockets:
-            each.setblocking(False)
 
     def close(self) -> None:
         """Close the sockets, end the planner."""
         self.unload()
-        for each in self._sockets:
+        for each in self._links:
             each.close()
 
-    def prepare(self, settings: LiveSettings) -> None:
-        """Make ready for `settings`, at rest: may compile. Raises `LiveError`, and the earlier settings stand."""
-        step = live_step(self._rig, settings, self._dt)
+    def ready(self, settings: LiveSettings) -> ReadyLive:
+        """Make ready for `settings`, at rest: may compile. Changes nothing. Raises `LiveError`."""
+        return ReadyLive(settings, live_step(self._rig, settings, self._dt))
+
+    def bind(self, ready: ReadyLive) -> None:
+        """Take what was made ready in the place of what was before."""
         self.unload()
-        self._step = step
-        self._settings = settings
-        self._buffer = LiveBuffer(self._config.delay_ms / 1e3 + step.preview_s)
+        self._step = ready.step
+        self._settings = ready.settings
+        self._buffer = LiveBuffer(self._config.delay_ms / 1e3 + ready.step.preview_s)
 
     def unload(self) -> None:
         """Forget the settings: a planner ends."""
@@ -120,7 +152,7 @@ class LiveSource:
         if now - self._rated[0] > _RATE_OVER_S:
             self.rate_hz = max(0, self._buffer.accepted - self._rated[1]) / (now - self._rated[0])
             self._rated = (now, self._buffer.accepted)
-        for each in self._sockets:
+        for each in self._links:
             for _ in range(_PER_TICK):
                 try:
                     data, sender = each.recvfrom(SAMPLE_SIZE + 1)
@@ -131,9 +163,9 @@ class LiveSource:
                     self.bad += 1
                     continue
                 used = self._following and self._is_followed(each, sender, now) and self._take(sample, now)
-                self._waiting.append((sample, used, time.monotonic(), each, sender))
+                self._waiting.append((sample, used, self._monotonic(), each, sender))
 
-    def _is_followed(self, via: socket.socket, sender: Any, now: float) -> bool:
+    def _is_followed(self, via: Link, sender: Any, now: float) -> bool:
         """One source a rig: the first to be heard, until it has been silent for a while."""
         source = (via.fileno(), sender)
         if source != self._source:
@@ -206,6 +238,21 @@ class LiveSource:
     def way_age_s(self) -> float:
         """How old the planner's last word is [s]; nan where none plans."""
         return math.nan if self._step is None else self._step.way_age_s
+
+    def view(self) -> LiveView:
+        """What a monitor needs to know of this tick."""
+        b = self._buffer
+        return LiveView(
+            self.acquired,
+            self.limited,
+            self.heard,
+            self.last_age_ms,
+            self.way_age_s,
+            self.bad,
+            b.dropped,
+            b.steps,
+            self.strangers,
+        )
 
     def health(self) -> LiveHealth | None:
         """What an operator wants to know of it; None where no live source is loaded."""

@@ -9,6 +9,7 @@ import ctypes.util
 import gc
 import os
 import time
+from typing import Protocol
 
 _MCL_CURRENT, _MCL_FUTURE = 1, 2
 
@@ -38,22 +39,60 @@ def still_collector() -> None:
     gc.disable()
 
 
+class Clock(Protocol):
+    """The time as the rig process sees it; a test's is made up."""
+
+    def monotonic_ns(self) -> int:
+        """Time that only grows [ns]."""
+        ...
+
+    def wall_ns(self) -> int:
+        """Time since the Unix epoch [ns]."""
+        ...
+
+    def sleep(self, seconds: float) -> None:
+        """Wait for so long."""
+        ...
+
+
+class SystemClock:
+    """This machine's."""
+
+    def monotonic_ns(self) -> int:
+        """Time since some moment before the process began [ns]."""
+        return time.monotonic_ns()
+
+    def wall_ns(self) -> int:
+        """Time since the Unix epoch [ns]."""
+        return time.time_ns()
+
+    def sleep(self, seconds: float) -> None:
+        """Wait for so long."""
+        time.sleep(seconds)
+
+
+def seconds(clock: Clock) -> float:
+    """Monotonic time [s]."""
+    return clock.monotonic_ns() / 1e9
+
+
 class Deadlines:
     """Deadlines every `period_ns`, from the first `wait` on."""
 
-    def __init__(self, period_ns: int) -> None:
+    def __init__(self, period_ns: int, clock: Clock) -> None:
         self.period_ns = period_ns
+        self._clock = clock
         self._next = 0
 
     def wait(self) -> tuple[int, int, int]:
         """Sleep until the next deadline: (now, lateness, deadlines missed), [ns] and a count."""
-        now = time.monotonic_ns()
+        now = self._clock.monotonic_ns()
         if self._next == 0:
             self._next = now + self.period_ns
         ahead = self._next - now
         if ahead > 0:
-            time.sleep(ahead / 1e9)
-            now = time.monotonic_ns()
+            self._clock.sleep(ahead / 1e9)
+            now = self._clock.monotonic_ns()
         lateness = now - self._next
         missed = lateness // self.period_ns if lateness > 0 else 0
         self._next += self.period_ns * (missed + 1)

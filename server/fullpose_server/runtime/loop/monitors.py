@@ -1,209 +1,176 @@
-"""Judging what the rig, its clock, its recorder and its people did: warn, or latch a fault and brake."""
-
-from __future__ import annotations
+"""What rig, clock, recorder and live source did, weighed: each monitor takes data and returns violations."""
 
 import math
-import time
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fullpose._typing import Array
 from fullpose.rig import FRAMES
 from fullpose_server.drives.base import Status
 from fullpose_server.drives.response_monitor import DriveResponseMonitor
-from fullpose_server.runtime.contract.config import Tolerance
-from fullpose_server.runtime.motion.generator import Mode
-from fullpose_server.runtime.motion.limit_guard import Finding
-from fullpose_server.session.alarms import Severity
-from fullpose_server.session.machine import Silence
-from fullpose_server.session.states import IN_MOTION, Event, State
-
-if TYPE_CHECKING:
-    from fullpose_server.runtime.loop.control_loop import RigLoop
+from fullpose_server.runtime.contract.config import RigConfig, Tolerance
+from fullpose_server.runtime.live.source import LiveView
+from fullpose_server.runtime.motion.limit_guard import Finding, Guard
+from fullpose_server.session.states import Event
 
 _RECORDER_SILENT_S = 1.0
 _ORDER_S = 0.2  # for an order to reach the drive: the first move after arming is not far yet
-_WAY_LATE_S = 0.5  # ten times as long as between two ways
+_PLAN_LATE_S = 0.5  # ten times as long as between two plans of a preview
+
+
+@dataclass(frozen=True)
+class Violation:
+    """A finding and what follows: `event` is reported (None: only a warning), `drive_brakes` by its own means."""
+
+    finding: Finding
+    event: Event | None = None
+    drive_brakes: bool = False
+
+
+@dataclass(frozen=True)
+class DriveView:
+    """What a tick saw of the drive, and what is asked of it."""
+
+    name: str
+    status: int
+    enabled: bool
+    commanded: bool
+    moving: bool
+    measured: Array  # (4,) [rad]
+
+
+def said(code: str, message: str, event: Event | None = None, *, drive_brakes: bool = False) -> Violation:
+    """A violation without a figure."""
+    finding = Finding(code, event is not None, message, None, math.nan, math.nan, "")
+    return Violation(finding, event, drive_brakes)
+
+
+def weighed(found: Finding | None, *, drive_brakes: bool = False) -> list[Violation]:
+    """A finding of the guard: brake, or warn; nothing found, nothing to do."""
+    if found is None:
+        return []
+    return [Violation(found, Event.FAULT if found.trips else None, drive_brakes and found.trips)]
 
 
 class Monitors:
-    """Judges for one loop. Each method looks at one thing, once a tick or less."""
+    """Each method looks at one thing, once a tick or less, and remembers no more than it needs to say things once."""
 
-    def __init__(self, loop: RigLoop) -> None:
-        self._loop = loop
+    def __init__(self, config: RigConfig, guard: Guard) -> None:
+        self._config = config
+        self._guard = guard
         self._warned: set[tuple[str, str | None]] = set()
         self._misses: list[float] = []
-        self._server_silence = Silence(loop.config.server)
-        self._drive_response = DriveResponseMonitor(round(_ORDER_S * loop.config.rate_hz))
+        self._response = DriveResponseMonitor(round(_ORDER_S * config.rate_hz))
 
     def forget(self) -> None:
         """Warn anew of what was warned of before: after a reset or unload."""
         self._warned.clear()
-        self._drive_response.forget()
+        self._response.forget()
 
-    def drive(self) -> None:
+    def is_new(self, found: Finding) -> bool:
+        """Whether this was not warned of since the last reset or unload; it is now."""
+        key = (found.code, found.frame)
+        new = key not in self._warned
+        self._warned.add(key)
+        return new
+
+    def drive(self, seen: DriveView) -> list[Violation]:
         """The drive's own status, and whether it does what it was told."""
-        loop = self._loop
-        status = loop.status
-        now = time.monotonic()
-        asked = loop.enabled and not loop.drive_brakes
-        disobeys = self._drive_response.ends(asked, loop.machine.moving, status)
+        status = seen.status
+        disobeys = self._response.ends(seen.commanded, seen.moving, status)
         if status & Status.LINK_LOST:
-            loop.enabled = loop.drive_brakes = False
-            loop.alarm("link_lost", Severity.FAULT, f"drive {loop.drive.name}: link lost; the drive brakes by itself")
-            loop.report(Event.LINK_LOST)
-            loop.drive.close()
-        elif loop.enabled and not loop.drive_brakes and status & (Status.FAULT | Status.ENCODER | Status.WATCHDOG):
-            word = "encoder" if status & Status.ENCODER else "watchdog" if status & Status.WATCHDOG else "fault"
-            frame = None
-            lost = np.flatnonzero(~np.isfinite(loop.measured))
-            if len(lost):
-                frame = FRAMES[int(lost[0])]
-            told = {
-                "encoder": f"{frame} frame: no position from its encoder",
-                "watchdog": "no command reached the drive in time: it brakes by itself",
-                "fault": "the drive reports a fault",
-            }[word]
-            loop.let_drive_brake(now)
-            self.trip(Finding(f"drive_{word}", True, told, frame, math.nan, math.nan, ""))
-        elif disobeys and asked:
-            loop.let_drive_brake(now)
+            text = f"drive {seen.name}: link lost; the drive brakes by itself"
+            return [said("link_lost", text, Event.LINK_LOST)]
+        if seen.commanded and status & (Status.FAULT | Status.ENCODER | Status.WATCHDOG):
+            return [self._drive_fault(seen)]
+        if disobeys and seen.commanded:
             why = "the order to enable was not confirmed" if status & Status.UNCONFIRMED else "it took the order"
-            self.trip(
-                _said("drive_not_enabled", f"drive {loop.drive.name} does not follow commands: {why}", trips=True)
-            )
-        elif disobeys:
+            text = f"drive {seen.name} does not follow commands: {why}"
+            return [said("drive_not_enabled", text, Event.FAULT, drive_brakes=True)]
+        if disobeys:
             why = "it still follows commands" if status & Status.ENABLED else "the order was not confirmed"
-            self.trip(
-                _said(
-                    "drive_not_disabled", f"drive {loop.drive.name} was told to brake or power off: {why}", trips=True
-                )
-            )
-        elif loop.enabled and status & Status.STALE_WRITE:
-            self.warn(_said("stale_write", "the drive refused an old command"))
+            text = f"drive {seen.name} was told to brake or power off: {why}"
+            return [said("drive_not_disabled", text, Event.FAULT)]
+        if seen.enabled and status & Status.STALE_WRITE:
+            return [said("stale_write", "the drive refused an old command")]
+        return []
 
-    def measured(self, now: float) -> float:
-        """The tracking error [rad]; nan where nothing is followed."""
-        loop = self._loop
-        motion = loop.motion
-        if not loop.enabled or loop.drive_brakes:
-            return math.nan
-        error, findings = loop.guard.measured(loop.measured, motion.x1, motion.q1)
+    def _drive_fault(self, seen: DriveView) -> Violation:
+        status = seen.status
+        word = "encoder" if status & Status.ENCODER else "watchdog" if status & Status.WATCHDOG else "fault"
+        lost = np.flatnonzero(~np.isfinite(seen.measured))
+        frame = FRAMES[int(lost[0])] if len(lost) else None
+        told = {
+            "encoder": f"{frame} frame: no position from its encoder",
+            "watchdog": "no command reached the drive in time: it brakes by itself",
+            "fault": "the drive reports a fault",
+        }[word]
+        return Violation(Finding(f"drive_{word}", True, told, frame, math.nan, math.nan, ""), Event.FAULT, True)
+
+    def measured(
+        self, measured: Array, due: Array, target: Array, live: LiveView | None
+    ) -> tuple[float, list[Violation]]:
+        """The tracking error [rad], nan where nothing is followed; `live` while a live source is followed."""
+        error, findings = self._guard.measured(measured, due, target)
+        violations: list[Violation] = []
         for found in findings:
-            if found.code == "attitude_error" and motion.mode is Mode.LIVE:
-                if not loop.live.acquired:
+            if found.code == "attitude_error" and live is not None:
+                if not live.acquired:
                     continue  # still on the way from where the rig stood to where the source is
-                if loop.live.limited:
+                if live.limited:
                     # The source asks for more than the limits allow, or has jumped after a gap: the rig does as it
                     # should, and is on its way to regain the attitude. Said, but no reason to stop.
-                    self.warn(replace(found, trips=False))
+                    violations.append(Violation(replace(found, trips=False)))
                     continue
-            if found.trips and found.code == "following_error":
-                loop.let_drive_brake(now)
-            self.weigh(found)
-        return error
+            violations += weighed(found, drive_brakes=found.code == "following_error")
+        return error, violations
 
-    def lateness(self, now: float, lateness_ns: int, missed: int) -> None:
+    def lateness(self, now: float, lateness_ns: int, missed: int, *, moving: bool) -> list[Violation]:
         """Ticks that were late, and deadlines that were missed: what the drive did not hear in time."""
-        loop = self._loop
-        moving = loop.enabled and loop.machine.moving
+        guard, tolerances = self._guard, self._config.guard
+        found: list[Violation] = []
         if moving:
-            self._weigh_scalar("lateness", lateness_ns / 1e6, loop.config.guard.lateness_ms, "ms")
+            found += weighed(guard.scalar("lateness", lateness_ns / 1e6, tolerances.lateness_ms, "ms"))
         if missed:
-            loop.shared.header["misses"] += missed
             self._misses = [t for t in self._misses if now - t < 1.0] + [now] * min(missed, 5000)
             if moving:
                 count = float(len(self._misses))
-                self._weigh_scalar("missed_deadlines", count, loop.config.guard.misses_per_s, "in 1 s")
+                found += weighed(guard.scalar("missed_deadlines", count, tolerances.misses_per_s, "in 1 s"))
+        return found
 
-    def recorder(self, now: float) -> None:
-        """A run goes on without its record, but not unsaid."""
-        loop = self._loop
-        if loop.run_id is None:
-            return
-        header = loop.shared.header
+    def recorder(self, now: float, header: NDArray[np.void]) -> list[Violation]:
+        """A run goes on without its record, but not unsaid. `header` of the shared memory."""
+        found = []
         error = bytes(header["recorder_error"][0])
-        free = int(header["recorder_free_bytes"][0]) / 1e6
+        free, least = int(header["recorder_free_bytes"][0]) / 1e6, self._config.min_free_mb
         if now - int(header["recorder_beat_ns"][0]) / 1e9 > _RECORDER_SILENT_S:
-            self.warn(_said("recorder_lost", "the recorder does not run"))
+            found.append(said("recorder_lost", "the recorder does not run"))
         if error:
-            self.warn(_said("record_error", error.decode("utf-8", "replace")))
-        if 0 < free < loop.config.min_free_mb:
+            found.append(said("record_error", error.decode("utf-8", "replace")))
+        if 0 < free < least:
             text = f"{free:.0f} MB free where runs are recorded"
-            self.warn(Finding("disk_low", False, text, None, free, loop.config.min_free_mb, "MB"))
+            found.append(Violation(Finding("disk_low", False, text, None, free, least, "MB")))
+        return found
 
-    def live(self) -> None:
+    def live(self, live: LiveView) -> list[Violation]:
         """The live source's samples, and their age."""
-        loop = self._loop
-        live = loop.live
+        found: list[Violation] = []
         if live.heard:
-            self._weigh_scalar("live_source_stale", live.last_age_ms, loop.config.guard.stale_ms, "ms")
-        if live.way_age_s > _WAY_LATE_S:
-            text = f"no way ahead from the planner for {live.way_age_s:.1f} s: the step goes on without its foresight"
-            age = live.way_age_s * 1e3
-            self.warn(Finding("preview_late", False, text, None, age, _WAY_LATE_S * 1e3, "ms"))
-        counts = live.counts
-        for word, text in (
-            ("bad", "samples of the live source are none: not used"),
-            ("dropped", "samples of the live source came late or twice: not used"),
-            ("clock_steps", "the live source began anew, or its clock was set"),
+            stale: Tolerance = self._config.guard.stale_ms
+            found += weighed(self._guard.scalar("live_source_stale", live.age_ms, stale, "ms"))
+        if live.plan_age_s > _PLAN_LATE_S:
+            text = f"no way ahead from the planner for {live.plan_age_s:.1f} s: the step goes on without its foresight"
+            age = live.plan_age_s * 1e3
+            found.append(Violation(Finding("preview_late", False, text, None, age, _PLAN_LATE_S * 1e3, "ms")))
+        second = "samples of a second live source, beside the one that is followed: not used"
+        for count, word, text in (
+            (live.bad, "bad", "samples of the live source are none: not used"),
+            (live.dropped, "dropped", "samples of the live source came late or twice: not used"),
+            (live.clock_steps, "clock_steps", "the live source began anew, or its clock was set"),
+            (live.strangers, "second_source", second),
         ):
-            if counts[word]:
-                self.warn(_said(f"live_{word}", text))
-        if live.strangers:
-            text = "samples of a second live source, beside the one that is followed: not used"
-            self.warn(_said("live_second_source", text))
-
-    def silences(self, now: float) -> None:
-        """Who holds the lease, and the server: a silent one means hold, then stop, then disarm."""
-        loop = self._loop
-        owned = loop.machine.state in IN_MOTION or loop.machine.state is State.ARMED
-        if not owned:
-            return
-        for event in loop.machine.silence(now):
-            self._silent("owner_silent", "the lease's holder is silent", event)
-        beat = int(loop.shared.header["server_beat_ns"][0]) / 1e9
-        for event in self._server_silence.due(now - beat):
-            self._silent("server_silent", "the server is silent", event)
-
-    def _silent(self, code: str, told: str, event: Event) -> None:
-        loop = self._loop
-        before = loop.machine.state
-        loop.report(event)
-        if loop.machine.state is not before:
-            loop.alarm(code, Severity.WARNING, f"{told}: {before} -> {loop.machine.state}")
-
-    def _weigh_scalar(self, code: str, value: float, tolerance: Tolerance, unit: str) -> None:
-        found = self._loop.guard.scalar(code, value, tolerance, unit)
-        if found is not None:
-            self.weigh(found)
-
-    def weigh(self, found: Finding) -> None:
-        """A finding of the guard: brake, or warn."""
-        if found.trips:
-            self.trip(found)
-        else:
-            self.warn(found)
-
-    def trip(self, found: Finding) -> None:
-        """Latch the fault and brake."""
-        self._raise(found, Severity.FAULT)
-        self._loop.report(Event.FAULT)
-
-    def warn(self, found: Finding) -> None:
-        """Raise a warning, once until a reset or unload."""
-        if (found.code, found.frame) not in self._warned:
-            self._warned.add((found.code, found.frame))
-            self._raise(found, Severity.WARNING)
-
-    def _raise(self, found: Finding, severity: Severity) -> None:
-        value = found.value if math.isfinite(found.value) else None
-        limit = found.limit if math.isfinite(found.limit) else None
-        unit = found.unit or None
-        self._loop.alarm(found.code, severity, found.message, frame=found.frame, value=value, limit=limit, unit=unit)
-
-
-def _said(code: str, message: str, *, trips: bool = False) -> Finding:
-    """A finding without a figure."""
-    return Finding(code, trips, message, None, math.nan, math.nan, "")
+            if count:
+                found.append(said(f"live_{word}", text))
+        return found

@@ -11,12 +11,13 @@ import numpy as np
 
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.formats.plan_folder import PlanFolder, PlanFolderError, read_plan, rig_hash
-from fullpose_server.runtime.contract.config import RigConfig
-from fullpose_server.runtime.live.steppers import LiveSettings
+from fullpose_server.runtime.live.source import LiveSource, ReadyLive
+from fullpose_server.runtime.live.steppers import LiveError, LiveSettings
 from fullpose_server.runtime.motion.generator import Motion
+from fullpose_server.runtime.motion.path_player import PathPlayer
 from fullpose_server.runtime.motion.point_to_point import MoveError, PointMove
+from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import SessionError
-from fullpose_server.session.machine import Binding
 from fullpose_server.session.states import Command
 
 
@@ -30,22 +31,29 @@ class OrderError(SessionError):
 
 @dataclass(frozen=True)
 class Load:
-    """What `load` brings: a plan or a live source's settings, with their binding."""
+    """What `load` brings, made ready: a plan with its player, or a live source's settings with their step."""
 
-    binding: Binding
-    plan: PlanFolder | None
-    live: LiveSettings | None
+    plan: PlanFolder | None = None
+    player: PathPlayer | None = None
+    live: ReadyLive | None = None
+
+    def close(self) -> None:
+        """Throw it away: it was not bound."""
+        if self.live is not None:
+            self.live.step.close()
 
 
-def load_of(args: dict[str, Any], config: RigConfig) -> Load:
+def load_of(args: dict[str, Any], rig: Rig, motion: Motion, live: LiveSource) -> tuple[Binding, Load]:
     """The plan of `args["plan_folder"]`, or the live settings of `args["live"]`. Raises `OrderError`."""
     if "live" in args:
         try:
-            live = msgspec.convert(args["live"], LiveSettings)
+            settings = msgspec.convert(args["live"], LiveSettings)
+            ready = live.ready(settings)
         except (msgspec.ValidationError, ValueError) as cause:
             raise OrderError("bad_arguments", f"live: {cause}") from cause
-        binding = Binding("live", live.hash, config.rig.name, rig_hash(config.rig), live=True)
-        return Load(binding, None, live)
+        except LiveError as cause:
+            raise OrderError("bad_arguments", str(cause)) from cause
+        return Binding("live", settings.hash, rig.name, rig_hash(rig), live=True), Load(live=ready)
     folder = args.get("plan_folder")
     if not isinstance(folder, str):
         raise OrderError("bad_arguments", "load needs plan_folder (a path), or live (settings)")
@@ -53,9 +61,9 @@ def load_of(args: dict[str, Any], config: RigConfig) -> Load:
         plan = read_plan(Path(folder))
     except PlanFolderError as cause:
         raise OrderError("bad_plan", str(cause)) from cause
-    _check_path(plan, config.rig)
+    _check_path(plan, rig)
     info = plan.info
-    return Load(Binding(info.plan_id, info.plan_hash, info.rig, info.rig_hash), plan, None)
+    return Binding(info.plan_id, info.plan_hash, info.rig, info.rig_hash), Load(plan, motion.ready(plan))
 
 
 def _check_path(plan: PlanFolder, rig: Rig) -> None:
@@ -139,3 +147,13 @@ def _four(args: dict[str, Any], name: str) -> np.ndarray[Any, np.dtype[np.float6
     if not isinstance(value, list) or len(value) != 4 or not all(isinstance(v, int | float) for v in value):
         raise OrderError("bad_arguments", f"{name} must be four numbers [deg], base first")
     return np.array(value, float)
+
+
+def alarms_of(args: dict[str, Any]) -> frozenset[int] | None:
+    """The numbers that `acknowledge` is about; None for all. Raises `OrderError`."""
+    raw = args.get("numbers")
+    if raw is None:
+        return None
+    if not (isinstance(raw, list) and all(isinstance(n, int) for n in raw)):
+        raise OrderError("bad_arguments", "numbers must be a list of alarm numbers, or left out for all")
+    return frozenset(raw)

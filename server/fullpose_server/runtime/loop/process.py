@@ -9,19 +9,70 @@ import os
 import signal
 import subprocess
 import sys
-import time
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
+
+import numpy as np
 
 from fullpose_server.drives import registry
 from fullpose_server.drives.base import Drive, DriveError
+from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.runtime.contract import config
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared
+from fullpose_server.runtime.live.links import open_links
+from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.loop import clock, prewarm
-from fullpose_server.runtime.loop.control_loop import RigLoop
+from fullpose_server.runtime.loop.clock import Clock, SystemClock
+from fullpose_server.runtime.loop.context import LoopState, Parts
+from fullpose_server.runtime.loop.control_loop import ControlLoop
+from fullpose_server.runtime.loop.control_server import ControlServer
+from fullpose_server.runtime.loop.event_log import EventLog
+from fullpose_server.runtime.loop.leisure import Leisure
+from fullpose_server.runtime.motion.generator import Motion
+from fullpose_server.runtime.motion.limit_guard import Guard
+from fullpose_server.session.machine import SessionMachine
 
 _LOCK_TRIES = 50
 _RECORDER_S = 10.0
+
+
+class RecorderChild:
+    """The recorder as a child of this process."""
+
+    def __init__(self, memory: Path, runs: Path) -> None:
+        self._memory, self._runs = memory, runs
+        self._process = start_recorder(memory, runs)
+
+    @property
+    def ended(self) -> bool:
+        """Whether it runs no more."""
+        return self._process.poll() is not None
+
+    def revive(self) -> int | None:
+        """Start it anew where it has ended: its process's number then, or None."""
+        if not self.ended:
+            return None
+        self._process = start_recorder(self._memory, self._runs)
+        return self._process.pid
+
+
+def assemble(settings: config.RigConfig, drive: Drive, shared: Shared, live: LiveSource, ticks: Clock) -> Parts:
+    """The parts of one rig's loop."""
+    rig = settings.rig
+    return Parts(
+        config=settings,
+        clock=ticks,
+        machine=SessionMachine(rig.name, rig_hash(rig), settings.owner),
+        drive=drive,
+        motion=Motion(rig, settings.motion, settings.rate_hz),
+        guard=Guard(rig, settings.guard, 1.0 / settings.rate_hz),
+        live=live,
+        shared=shared,
+        log=EventLog(shared, ticks),
+        state=LoopState(np.array(rig.home), np.zeros(4)),
+    )
 
 
 def main() -> int:
@@ -33,7 +84,8 @@ def main() -> int:
     log = logging.getLogger("fullpose.rig")
     settings = config.decode(given.config.read_bytes())
     paths = RigPaths(settings.directory)
-    lock = _lock(paths)
+    ticks = SystemClock()
+    lock = _lock(paths, ticks)
     if lock is None:
         log.error("another process runs %s", settings.name)
         return 1
@@ -46,23 +98,24 @@ def main() -> int:
     memory.unlink(missing_ok=True)  # of a process that was killed: we hold the lock
     shared = Shared(memory, create=True)
     shared.header["rig_pid"] = os.getpid()
-    shared.header["server_beat_ns"] = time.monotonic_ns()
+    shared.header["server_beat_ns"] = ticks.monotonic_ns()
     # A rig is stopped by command; a stray Ctrl-C or hang-up must not drop it in mid-flight.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    recorder = start_recorder(memory, settings.runs)
+    recorder = RecorderChild(memory, settings.runs)
     prewarm.kernels(settings)
-    _wait_for(recorder, shared)
-    loop: RigLoop | None = None
+    _wait_for(recorder, shared, ticks)
     try:
         try:
             realtime = clock.go_realtime(settings.realtime_priority, settings.cpu)
         except OSError as cause:
             log.error("process.cpu = %s: %s; expected one of this machine's", settings.cpu, cause.strerror)
             return 2
-        loop = RigLoop(
-            settings, drive, shared, paths, realtime, lambda: start_recorder(memory, settings.runs), recorder
-        )
+        links = open_links(paths, settings.live)
+        live = LiveSource(settings.rig, settings.live, 1.0 / settings.rate_hz, links, partial(clock.seconds, ticks))
+        parts = replace(assemble(settings, drive, shared, live, ticks), realtime=realtime)
+        leisure = Leisure(recorder, parts.log, shared.header, settings.exit_idle_s, clock.seconds(ticks))
+        loop = ControlLoop(parts, partial(ControlServer, paths), leisure)
         signal.signal(signal.SIGTERM, lambda *_: loop.terminate())
         clock.still_collector()
         paths.write_notes(os.getpid())
@@ -89,21 +142,21 @@ def start_recorder(memory: Path, runs: Path) -> "subprocess.Popen[bytes]":
     return subprocess.Popen([*command, "--parent", str(os.getpid())], stdin=subprocess.DEVNULL)
 
 
-def _wait_for(recorder: "subprocess.Popen[bytes]", shared: Shared) -> None:
+def _wait_for(recorder: RecorderChild, shared: Shared, ticks: Clock) -> None:
     """Wait for the recorder's first sign of life; without one the session will refuse to arm, and say why."""
-    deadline = time.monotonic() + _RECORDER_S
-    while time.monotonic() < deadline and recorder.poll() is None:
+    deadline = clock.seconds(ticks) + _RECORDER_S
+    while clock.seconds(ticks) < deadline and not recorder.ended:
         if int(shared.header["recorder_beat_ns"][0]):
             return
-        time.sleep(0.01)
+        ticks.sleep(0.01)
 
 
-def _lock(paths: RigPaths) -> int | None:
+def _lock(paths: RigPaths, ticks: Clock) -> int | None:
     for _ in range(_LOCK_TRIES):
         fd = paths.take_lock()
         if fd is not None:
             return fd
-        time.sleep(0.02)  # a server that looks whether we live holds it for a moment
+        ticks.sleep(0.02)  # a server that looks whether we live holds it for a moment
     return None
 
 

@@ -1,61 +1,60 @@
 """What the rig process shows: one telemetry row a tick, counters, and the session's snapshot when it changes."""
 
-from __future__ import annotations
-
 import math
-import time
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fullpose_server.drives.base import Status
 from fullpose_server.runtime.contract import messages, telemetry
 from fullpose_server.runtime.contract.shared_memory import BUCKETS
+from fullpose_server.runtime.loop.context import Parts
 from fullpose_server.runtime.motion.generator import Mode
-
-if TYPE_CHECKING:
-    from fullpose_server.runtime.loop.control_loop import RigLoop
 
 _DEG = 180.0 / math.pi
 _REFRESH_S = 0.25  # at least this often, so that the lease's age is fresh
 
 
 class Publisher:
-    """Shows one loop."""
+    """Shows one rig."""
 
-    def __init__(self, loop: RigLoop) -> None:
-        self._loop = loop
+    def __init__(self, parts: Parts) -> None:
+        self._parts = parts
         self._row = np.zeros(1, telemetry.SAMPLE)
         self._published = -1
         self._published_at = 0.0
 
     def count(self, lateness_ns: int) -> None:
         """Count one tick."""
-        header = self._loop.shared.header
+        header = self._parts.shared.header
         header["ticks"] += 1
-        self._loop.shared.histogram[min(lateness_ns // 1000, BUCKETS - 1)] += 1
+        self._parts.shared.histogram[min(lateness_ns // 1000, BUCKETS - 1)] += 1
         if lateness_ns > int(header["max_lateness_ns"][0]):
             header["max_lateness_ns"] = lateness_ns
 
+    def busy(self, work_ns: int) -> None:
+        """How long one tick's work took [ns], smoothed."""
+        header = self._parts.shared.header
+        header["busy_ns"] = (int(header["busy_ns"][0]) * 63 + work_ns) // 64
+
     def refresh(self, now: float) -> None:
         """Publish where something changed, or enough time has passed."""
-        if self._loop.machine.revision != self._published or now - self._published_at > _REFRESH_S:
+        if self._parts.machine.revision != self._published or now - self._published_at > _REFRESH_S:
             self.publish()
 
     def publish(self) -> None:
         """Publish the session's snapshot."""
-        loop = self._loop
-        now_ns = time.monotonic_ns()
-        machine, bound = loop.machine, loop.machine.binding
+        p = self._parts
+        now_ns = p.clock.monotonic_ns()
+        machine, bound = p.machine, p.machine.binding
         ref = None
         if bound is not None:
-            info = None if loop.command_handler.plan is None else loop.command_handler.plan.info
+            info = p.state.plan
             name, duration = ("", None) if info is None else (info.name, info.duration_s)
             ref = messages.PlanRef(bound.plan_id, bound.plan_hash, bound.rig_hash, bound.live, name, duration)
         lease = machine.lease(now_ns / 1e9)
-        hold_s = loop.config.owner.hold_s
+        hold_s = p.config.owner.hold_s
         published = messages.Published(
-            rig=loop.config.name,
+            rig=p.config.name,
             state=machine.state,
             revision=machine.revision,
             allowed=[str(c) for c in machine.allowed()],
@@ -65,25 +64,25 @@ class Publisher:
             plan=ref,
             alarms=list(machine.alarms.standing),
             history=list(machine.alarms.history[-64:]),
-            realtime=loop.realtime,
-            run_id=loop.run_id,
-            drive=loop.drive.name,
-            live=loop.live.health(),
+            realtime=p.realtime,
+            run_id=p.state.run_id,
+            drive=p.drive.name,
+            live=p.live.health(),
         )
-        loop.shared.publish(messages.encode(published), machine.revision)
+        p.shared.publish(messages.encode(published), machine.revision)
         self._published = machine.revision
         self._published_at = now_ns / 1e9
 
-    def record(self, now_ns: int, lateness_ns: int, missed: int, error: float) -> float:
-        """Add the tick's row to the ring; `error` is the tracking error [rad]. Returns the solve error [deg]."""
-        loop, row = self._loop, self._row
-        motion, machine = loop.motion, loop.machine
+    def record(self, now_ns: int, lateness_ns: int, missed: int) -> float:
+        """Add the tick's row to the ring. Returns the solve error [deg]."""
+        p, state, row = self._parts, self._parts.state, self._row
+        motion, machine = p.motion, p.machine
         row["time_ns"] = now_ns
-        row["wall_ns"] = time.time_ns()
+        row["wall_ns"] = p.clock.wall_ns()
         row["state"] = machine.state.code
         flags = telemetry.LATE if missed else 0
-        flags |= telemetry.ENABLED if loop.enabled and not loop.drive_brakes else 0
-        if motion.mode is Mode.BRAKE or loop.drive_brakes or loop.status & Status.BRAKING:
+        flags |= telemetry.ENABLED if state.commanded else 0
+        if motion.mode is Mode.BRAKE or state.drive_brakes or state.status & Status.BRAKING:
             flags |= telemetry.BRAKING
         if motion.mode is Mode.PATH and math.isnan(motion.q[0]):
             flags |= telemetry.LEAD
@@ -98,18 +97,18 @@ class Publisher:
         np.multiply(motion.x, _DEG, out=row["demand"][0])
         np.multiply(motion.v, _DEG, out=row["demand_rate"][0])
         np.multiply(motion.a, _DEG, out=row["demand_acceleration"][0])
-        np.multiply(loop.measured, _DEG, out=row["measured"][0])
-        np.multiply(loop.measured_rate, _DEG, out=row["measured_rate"][0])
+        np.multiply(state.measured, _DEG, out=row["measured"][0])
+        np.multiply(state.measured_rate, _DEG, out=row["measured_rate"][0])
         row["target"] = motion.q
-        solved = motion.solve_error(loop.rig.axes) * _DEG
+        solved: float = motion.solve_error(p.config.rig.axes) * _DEG
         row["solve_error_deg"] = solved
-        row["tracking_error_deg"] = error * _DEG
-        if loop.enabled:
-            np.multiply(loop.guard.following, _DEG, out=row["following_error_deg"][0])
+        row["tracking_error_deg"] = state.tracking_error * _DEG
+        if state.enabled:
+            np.multiply(p.guard.following, _DEG, out=row["following_error_deg"][0])
         else:
             row["following_error_deg"] = 0.0
-        row["margin"] = loop.guard.margin
+        row["margin"] = p.guard.margin
         row["lateness_us"] = lateness_ns / 1e3
-        row["tick"] = loop.ticks
-        loop.shared.ring.append(row)
+        row["tick"] = state.ticks
+        p.shared.ring.append(row)
         return solved

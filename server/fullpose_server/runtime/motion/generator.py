@@ -64,10 +64,18 @@ class Motion:
 
     # --- what to do ---
 
+    def ready(self, plan: PlanFolder) -> PathPlayer:
+        """A player for `plan`; changes nothing."""
+        c = self._config
+        return PathPlayer(plan, self._rig, self._rate_hz, c.hold_scale_rate, c.hold_scale_jerk)
+
+    def bind(self, player: PathPlayer) -> None:
+        """Take a player that was made ready."""
+        self.player = player
+
     def load(self, plan: PlanFolder) -> None:
         """Make ready to play `plan`."""
-        c = self._config
-        self.player = PathPlayer(plan, self._rig, self._rate_hz, c.hold_scale_rate, c.hold_scale_jerk)
+        self.bind(self.ready(plan))
 
     def unload(self) -> None:
         """Forget the plan."""

@@ -6,30 +6,16 @@ import pytest
 
 from fullpose_server.runtime.loop import clock
 from fullpose_server.runtime.loop.clock import Deadlines
-
-
-class FakeTime:
-    """A clock that sleeps exactly, and can be held up."""
-
-    def __init__(self) -> None:
-        self.now = 1_000_000_000
-
-    def monotonic_ns(self) -> int:
-        return self.now
-
-    def sleep(self, seconds: float) -> None:
-        self.now += round(seconds * 1e9)
+from tests.support.made_up_clock import MadeUpClock
 
 
 @pytest.fixture
-def fake(monkeypatch: pytest.MonkeyPatch) -> FakeTime:
-    made = FakeTime()
-    monkeypatch.setattr(clock, "time", made)
-    return made
+def fake() -> MadeUpClock:
+    return MadeUpClock()
 
 
-def test_work_does_not_shift_the_deadlines(fake: FakeTime) -> None:
-    deadlines = Deadlines(1_000_000)
+def test_work_does_not_shift_the_deadlines(fake: MadeUpClock) -> None:
+    deadlines = Deadlines(1_000_000, fake)
     begun = fake.now
     for tick in range(1, 100):
         now, lateness, missed = deadlines.wait()
@@ -37,8 +23,8 @@ def test_work_does_not_shift_the_deadlines(fake: FakeTime) -> None:
         fake.now += 300_000 + tick  # work
 
 
-def test_missed_deadlines_are_counted_and_not_caught_up(fake: FakeTime) -> None:
-    deadlines = Deadlines(1_000_000)
+def test_missed_deadlines_are_counted_and_not_caught_up(fake: MadeUpClock) -> None:
+    deadlines = Deadlines(1_000_000, fake)
     first, _, _ = deadlines.wait()
     fake.now += 3_400_000
     now, lateness, missed = deadlines.wait()
@@ -47,8 +33,8 @@ def test_missed_deadlines_are_counted_and_not_caught_up(fake: FakeTime) -> None:
     assert (now - first, lateness, missed) == (4_000_000, 0, 0)
 
 
-def test_a_restart_forgets_the_pause(fake: FakeTime) -> None:
-    deadlines = Deadlines(1_000_000)
+def test_a_restart_forgets_the_pause(fake: MadeUpClock) -> None:
+    deadlines = Deadlines(1_000_000, fake)
     deadlines.wait()
     fake.now += 700_000_000
     deadlines.restart()
@@ -68,7 +54,7 @@ def test_health_says_why_there_is_no_real_time(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_the_real_clock_ticks_on() -> None:
-    deadlines = Deadlines(2_000_000)
+    deadlines = Deadlines(2_000_000, clock.SystemClock())
     begun = time.monotonic_ns()
     ticks = 0
     for _ in range(20):

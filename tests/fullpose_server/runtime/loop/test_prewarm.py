@@ -10,7 +10,7 @@ from tests.support.repository import ROOT
 
 # In a process of its own: in this one other tests have called most kernels already.
 COMMON = """
-import json, math, socket, sys
+import json, math, socket, sys, time
 from pathlib import Path
 import numpy as np
 from numba.core.dispatcher import Dispatcher
@@ -18,6 +18,7 @@ from fullpose_server.formats.plan_folder import read_plan, write_plan
 from fullpose_server.runtime.loop import prewarm
 from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
 from fullpose_server.runtime.motion.limit_guard import Guard
+from fullpose_server.runtime.live.links import open_links
 from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.live.steppers import LiveSettings
 from fullpose_server.runtime.live.packets import Kind, encode_sample
@@ -55,8 +56,9 @@ def tick():
     return event
 """
 LIVE = """
-source = LiveSource(rig, LiveConfig(delay_ms=4.0), RigPaths(folder), 1e-3)
-source.prepare(LiveSettings(sys.argv[2]))
+live = LiveConfig(delay_ms=4.0)
+source = LiveSource(rig, live, 1e-3, open_links(RigPaths(folder), live), time.monotonic)
+source.bind(source.ready(LiveSettings(sys.argv[2])))
 before = compiled()
 link = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
 link.connect(str(folder / "live.sock"))

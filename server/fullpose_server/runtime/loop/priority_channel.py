@@ -1,0 +1,47 @@
+"""The priority channel: E-stop and stop as times in the shared memory, that wait behind no other command."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose_server.runtime.loop.clock import Clock
+from fullpose_server.session.states import Command
+
+_CHANNELS = (("estop", Command.ESTOP), ("stop", Command.STOP))
+
+
+class PriorityChannel:
+    """Reads what the server asks, answers when the first braking command is written. `header` is the shared one."""
+
+    def __init__(self, header: NDArray[np.void], clock: Clock) -> None:
+        self._header = header
+        self._clock = clock
+        self._obeyed: list[tuple[str, int]] = []
+        self._estop_unwritten = False
+
+    def asked(self) -> list[tuple[Command, str]]:
+        """What was asked since the last tick, and by whom."""
+        found = []
+        for channel, command in _CHANNELS:
+            asked = int(self._header[f"{channel}_request_ns"][0])
+            if asked != int(self._header[f"{channel}_done_ns"][0]):
+                found.append((command, bytes(self._header[f"{channel}_who"][0]).decode("utf-8", "replace")))
+                self._obeyed.append((channel, asked))
+                self._estop_unwritten = channel == "estop" or self._estop_unwritten
+        return found
+
+    def written(self) -> None:
+        """A command was written to the drive."""
+        if self._estop_unwritten:
+            self._estop_unwritten = False
+            self._header["estop_wrote_ns"] = self._clock.monotonic_ns()
+
+    @property
+    def waiting(self) -> bool:
+        """Whether somebody waits to be told that it is done."""
+        return bool(self._obeyed)
+
+    def done(self) -> None:
+        """Tell them."""
+        for channel, asked in self._obeyed:
+            self._header[f"{channel}_done_ns"] = asked
+        self._obeyed.clear()
