@@ -27,8 +27,8 @@ LONG_KERNELS = {
     "search_start",
 }
 WIDE = 37
-LONG_FILES = 17
-CIRCLES = ("fullpose_server.runtime.live", "fullpose_server.runtime.loop")
+LONG_FILES = 15
+CIRCLES = ("fullpose_server.runtime.live",)
 SLEEPING = (
     "tests/fullpose_server/drives/test_udp.py",
     "tests/fullpose_server/runtime/live/test_preview_stepper.py",
