@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
+from fullpose.registry import method_options, parse_variant
 from fullpose.resample import resample
 from fullpose.rig import builtin_rigs
 from fullpose.solve import solve
@@ -120,7 +121,9 @@ def feasible(method: str, rig_name: str, name: str) -> bool:
     """Whether a method flies a flight exactly and inside the limits."""
     time, body = read(name)
     rig, attitude = builtin_rigs()[rig_name], in_our_axes(body)
-    solution = solve(time, attitude, rig, method)
+    asked = parse_variant(method)
+    options = method_options(asked.method, asked.options)
+    solution = solve(time, attitude, rig, asked.method, options)
     check = verify(time, solution.angles, rig, attitude)
     return solution.limited_samples == 0 and check.max_matrix_error < 1e-13 and not check.violations
 
