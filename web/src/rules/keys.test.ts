@@ -3,7 +3,7 @@ import contract from "../../../docs/openapi.json";
 import { commandOfKey, type Key } from "./keys";
 
 const key = (name: string, more: Partial<Key> = {}): Key => ({ key: name, repeat: false, focus: "none", modified: false, ...more });
-const STATES: (string | null)[] = [...contract.components.schemas.SessionOut.properties.state.enum, null];
+const STATES: (string | null)[] = [...contract.components.schemas.State.enum, null];
 const FOCUS = ["text", "control", "none"] as const;
 
 it("Space holds what runs and gives no command in any other state", () => {

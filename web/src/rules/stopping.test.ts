@@ -2,7 +2,7 @@ import { expect, it } from "vitest";
 import contract from "../../../docs/openapi.json";
 import { settled, unconfirmedText } from "./stopping";
 
-const STATES = contract.components.schemas.SessionOut.properties.state.enum;
+const STATES = contract.components.schemas.State.enum;
 
 it("a stop is settled where the rig brakes or is past it", () => {
   expect(STATES.filter((state) => !settled("stop", state)).sort()).toEqual(["held", "live", "positioning", "running"]);
