@@ -142,6 +142,10 @@ export class Stream {
       case "pong":
         this.listener.link({ type: "pong", roundTripMs: this.around.now() - message.t });
         break;
+      case "stopped": // the answer to a stop by this socket; the console stops over HTTP, and the session tells the rest
+        break;
+      default: // a message of the contract that has no case here does not compile; one of a newer server is passed over
+        message satisfies never;
     }
   }
 

@@ -25,24 +25,18 @@ export type Rig = Schemas["RigOut"];
 export type Run = Schemas["RunOut"];
 export type ScenePose = Schemas["ScenePoseOut"];
 export type Snapshot = Schemas["SessionOut"];
-export type StateName = Schemas["SessionOut"]["state"];
+export type StateName = Schemas["State"];
 export type Trajectory = Schemas["TrajectoryOut"];
 export type TrajectoryPreview = Schemas["TrajectoryPreview"];
 
 // The stream's messages.
 export type RecordDescription = Schemas["Record"];
-export type PlaybackControl = Schemas["Seek"] | Schemas["Speed"] | Schemas["Pause"] | Schemas["Play"];
+export type PlaybackControl = Extract<Schemas["StreamMessageIn"], { type: "seek" | "speed" | "pause" | "play" }>;
 export type Replayed = Schemas["Replayed"];
 export type ReplayOf = Schemas["ReplayOf"];
 export type Subscribe = Schemas["Subscribe"];
 export type TelemetryMessage = Schemas["Telemetry"];
-export type ServerMessage =
-  | Schemas["Hello"]
-  | Schemas["SessionChanged"]
-  | Schemas["Telemetry"]
-  | Schemas["Replayed"]
-  | Schemas["Pong"]
-  | Schemas["StreamProblem"];
+export type ServerMessage = Schemas["StreamMessageOut"];
 
 /** From the outside in; the order of every array of four. */
 export const FRAMES: readonly FrameName[] = ["base", "outer", "middle", "inner"];
