@@ -120,7 +120,7 @@ class MadeUpRig:
         header["recorder_beat_ns"] = self.clock.now
         if self.server_heard:
             header["server_beat_ns"] = self.clock.now
-        if self.owner_heard and self.epoch and self.parts.state.ticks % 500 == 0:
+        if self.owner_heard and self.epoch and self.parts.state.ticks % 50 == 0:
             self.ask("lease", "", {}, "renew")
         if self.source_heard and self.state is State.LIVE:
             now = seconds(self.clock)
