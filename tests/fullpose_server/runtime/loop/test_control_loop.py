@@ -102,10 +102,9 @@ def cause(rig: MadeUpRig, row: Transition, plan: Path) -> None:
     match row.trigger:
         case C.LOAD:
             rig.must("load", plan_folder=str(plan))
-        case C.MOVE:
-            rig.must("move", target_deg=[0.0, 5.0, 5.0, 5.0])
-        case C.JOG:
-            rig.must("jog", frame="inner", step_deg=5.0)
+        case C.MOVE | C.JOG:
+            where = {"target_deg": [0.0, 5.0, 5.0, 5.0]} if row.trigger is C.MOVE else {"step_deg": [5.0] * 4}
+            rig.must(str(row.trigger), **where)
         case C.GO_LIVE:
             rig.must("disarm")
             rig.must("unload")
