@@ -2,6 +2,8 @@
 
 from fullpose_server.drives.base import Status
 
+_UNCONFIRMED, _ENABLED = int(Status.UNCONFIRMED), int(Status.ENABLED)  # plain numbers: asked every tick
+
 
 class DriveResponseMonitor:
     """Compares, once a tick, what is asked of a drive with what it shows; counts ticks, not time.
@@ -28,7 +30,7 @@ class DriveResponseMonitor:
         if asked is not self._asked:
             self._asked = asked
             self.forget()
-        if not status & Status.UNCONFIRMED and bool(status & Status.ENABLED) is asked:
+        if not status & _UNCONFIRMED and bool(status & _ENABLED) is asked:
             self._obeyed = True
             self._ticks = 0
             return False

@@ -135,7 +135,8 @@ class ControlLoop:
             live = p.live.view() if motion.mode is Mode.LIVE else None
             state.tracking_error, found = self._monitors.measured(state.measured, motion.x1, motion.q1, live)
             apply(found)
-        header["misses"] += missed
+        if missed:
+            header["misses"] += missed
         apply(self._monitors.lateness(now, lateness_ns, missed, moving=state.enabled and machine.moving))
         p.live.poll(now)
         if state.ticks % 16 == 0:

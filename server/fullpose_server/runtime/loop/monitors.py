@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,9 @@ from fullpose_server.runtime.live.source import LiveView
 from fullpose_server.runtime.motion.limit_guard import Finding, Guard
 from fullpose_server.session.states import Event
 
+# As plain numbers: flags make an object of every "and", and this is asked a thousand times a second.
+_LINK_LOST, _STALE_WRITE = int(Status.LINK_LOST), int(Status.STALE_WRITE)
+_BROKEN = int(Status.FAULT | Status.ENCODER | Status.WATCHDOG)
 _RECORDER_SILENT_S = 1.0
 _ORDER_S = 0.2  # for an order to reach the drive: the first move after arming is not far yet
 _PLAN_LATE_S = 0.5  # ten times as long as between two plans of a preview
@@ -29,8 +33,7 @@ class Violation:
     drive_brakes: bool = False
 
 
-@dataclass(frozen=True)
-class DriveView:
+class DriveView(NamedTuple):
     """What a tick saw of the drive, and what is asked of it."""
 
     name: str
@@ -80,10 +83,10 @@ class Monitors:
         """The drive's own status, and whether it does what it was told."""
         status = seen.status
         disobeys = self._response.ends(seen.commanded, seen.moving, status)
-        if status & Status.LINK_LOST:
+        if status & _LINK_LOST:
             text = f"drive {seen.name}: link lost; the drive brakes by itself"
             return [said("link_lost", text, Event.LINK_LOST)]
-        if seen.commanded and status & (Status.FAULT | Status.ENCODER | Status.WATCHDOG):
+        if seen.commanded and status & _BROKEN:
             return [self._drive_fault(seen)]
         if disobeys and seen.commanded:
             why = "the order to enable was not confirmed" if status & Status.UNCONFIRMED else "it took the order"
@@ -93,7 +96,7 @@ class Monitors:
             why = "it still follows commands" if status & Status.ENABLED else "the order was not confirmed"
             text = f"drive {seen.name} was told to brake or power off: {why}"
             return [said("drive_not_disabled", text, Event.FAULT)]
-        if seen.enabled and status & Status.STALE_WRITE:
+        if seen.enabled and status & _STALE_WRITE:
             return [said("stale_write", "the drive refused an old command")]
         return []
 

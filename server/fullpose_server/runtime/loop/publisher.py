@@ -10,6 +10,7 @@ from fullpose_server.runtime.contract.shared_memory import BUCKETS
 from fullpose_server.runtime.loop.context import Parts
 from fullpose_server.runtime.motion.generator import Mode
 
+_DRIVE_BRAKES = int(Status.BRAKING)
 _DEG = 180.0 / math.pi
 _REFRESH_S = 0.25  # at least this often, so that the lease's age is fresh
 
@@ -82,7 +83,7 @@ class Publisher:
         row["state"] = machine.state.code
         flags = telemetry.LATE if missed else 0
         flags |= telemetry.ENABLED if state.commanded else 0
-        if motion.mode is Mode.BRAKE or state.drive_brakes or state.status & Status.BRAKING:
+        if motion.mode is Mode.BRAKE or state.drive_brakes or state.status & _DRIVE_BRAKES:
             flags |= telemetry.BRAKING
         if motion.mode is Mode.PATH and math.isnan(motion.q[0]):
             flags |= telemetry.LEAD
