@@ -11,7 +11,7 @@ from pydantic.json_schema import models_json_schema
 from fullpose_server.api.errors import MEDIA_TYPE
 from fullpose_server.api.schemas.base import Problem, Wire
 from fullpose_server.api.schemas.live import LiveOpened, LiveProblem, LiveReplyOut, LiveSampleIn, OpenLive
-from fullpose_server.api.schemas.solve import Opened, OpenSolve, Solved, SolveProblem, SolveSamples
+from fullpose_server.api.schemas.solve import Opened, OpenSolve, Solved, SolveIn, SolveProblem, SolveSamples
 from fullpose_server.api.schemas.stream import STREAM_IN, STREAM_OUT
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
 
@@ -26,7 +26,7 @@ ANSWERED = {
     "SolveMessageOut": (Opened, Solved, SolveProblem),
     "LiveMessageOut": (LiveOpened, LiveReplyOut, LiveProblem),
 }
-MESSAGES = (*chain.from_iterable(SENT.values()), TrajectoryIn)
+MESSAGES = (*chain.from_iterable(SENT.values()), TrajectoryIn, SolveIn)
 ANSWERS = (Problem, *chain.from_iterable(ANSWERED.values()))
 
 

@@ -16,8 +16,10 @@ from websockets.sync.client import ClientConnection, connect
 from fullpose_server.app import create_app
 from fullpose_server.cli._serving import bind
 from fullpose_server.settings import Settings
+from tests.support.loop_watch import LoopWatch, watched_loop
 from tests.support.waiting import until
 
+LOOP_THREAD = "live server"
 FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(
     f"{k / 50},{40 * (k / 100) ** 2},{10 * (k / 100) ** 2},{-5 * (k / 100) ** 2}\n" for k in range(101)
 )
@@ -119,21 +121,23 @@ class Operator:
 def live_server(folder: Path, **overrides: Any) -> Iterator[LiveServer]:
     settings = Settings(data_dir=folder, **overrides)
     listener = bind("127.0.0.1", 0)
-    server = _Thread(settings, listener)
-    server.start()
-    try:
-        server.wait()
-        live = LiveServer(listener.getsockname()[1], settings)
-        with live.http:
-            yield live
-    finally:
-        server.end()
+    with watched_loop() as watch:
+        server = _Thread(settings, listener, watch)
+        server.start()
+        try:
+            server.wait()
+            live = LiveServer(listener.getsockname()[1], settings)
+            with live.http:
+                yield live
+        finally:
+            server.end()
+        watch.check()
 
 
 class _Thread(threading.Thread):
-    def __init__(self, settings: Settings, listener: socket.socket) -> None:
-        super().__init__(name="live server")
-        self._settings, self._listener = settings, listener
+    def __init__(self, settings: Settings, listener: socket.socket, watch: LoopWatch) -> None:
+        super().__init__(name=LOOP_THREAD)
+        self._settings, self._listener, self._watch = settings, listener, watch
         self._ready = threading.Event()
         self._server: uvicorn.Server | None = None
         self._error: BaseException | None = None
@@ -151,6 +155,7 @@ class _Thread(threading.Thread):
         async with app.router.lifespan_context(app):
             config = uvicorn.Config(app, lifespan="off", log_config=None, timeout_graceful_shutdown=2)
             self._server = uvicorn.Server(config)
+            self._watch.begin()
             self._ready.set()
             await self._server.serve(sockets=[self._listener])
 

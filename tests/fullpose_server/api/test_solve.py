@@ -1,6 +1,7 @@
 """Solving over the wire, checked against rotations by SciPy."""
 
 import json
+import threading
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,8 @@ from scipy.spatial.transform import Rotation
 from websockets.exceptions import ConnectionClosedError
 from websockets.sync.client import ClientConnection, connect
 
-from tests.fullpose_server.api.live_server import LiveServer
+from fullpose_server.api.attitudes import attitudes
+from tests.fullpose_server.api.live_server import LOOP_THREAD, LiveServer
 
 TIME = np.arange(300) * 0.01
 EULER = np.column_stack([40 * np.sin(TIME), 30 * np.sin(2 * TIME), 20 * np.sin(3 * TIME)])
@@ -167,3 +169,20 @@ def test_a_fault_of_the_servers_own_is_told_and_the_stream_is_closed(
             stream.recv(timeout=30.0)
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == 1011
+
+
+def test_no_sample_is_solved_on_the_event_loop(server: LiveServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not even one: the first compiles its method's kernels, for seconds."""
+    threads: list[str] = []
+
+    def noted(message: Any) -> Any:
+        threads.append(threading.current_thread().name)
+        return attitudes(message)
+
+    monkeypatch.setattr("fullpose_server.api.routes.solve.attitudes", noted)
+    with connect(f"{server.ws}/solve", proxy=None) as stream:
+        exchange(stream, OPEN)
+        assert exchange(stream, ONE)["type"] == "solved"
+    assert server.http.post("/solve", json={"rig": "vertical-4"} | {k: ONE[k] for k in ("time_s", "q")}).is_success
+    assert len(threads) == 2
+    assert LOOP_THREAD not in threads

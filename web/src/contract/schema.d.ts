@@ -2379,8 +2379,11 @@ export interface components {
         };
         /** SolveIn */
         SolveIn: {
-            /** Euler Deg */
-            euler_deg?: [
+            /**
+             * Euler Deg
+             * @default null
+             */
+            euler_deg: [
                 number,
                 number,
                 number
@@ -2397,8 +2400,11 @@ export interface components {
             options: {
                 [key: string]: boolean | number | string;
             };
-            /** Q */
-            q?: [
+            /**
+             * Q
+             * @default null
+             */
+            q: [
                 number,
                 number,
                 number,
@@ -2406,8 +2412,11 @@ export interface components {
             ][] | null;
             /** Rig */
             rig: string;
-            /** Start Deg */
-            start_deg?: [
+            /**
+             * Start Deg
+             * @default null
+             */
+            start_deg: [
                 number,
                 number,
                 number,

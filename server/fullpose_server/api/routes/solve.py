@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from fastapi import APIRouter, Request, Response, WebSocket
+from fastapi.exceptions import RequestValidationError
 from pydantic import TypeAdapter, ValidationError
 
 from fullpose.errors import InputError, SolverError
@@ -30,23 +31,39 @@ from fullpose_server.api.schemas.solve import (
     SolveProblem,
     SolveSamples,
 )
+from fullpose_server.api.streams.tasks import GoneError, close_for, send_text
 from fullpose_server.errors import ServerError
 from fullpose_server.formats.report import make_report
 from fullpose_server.formats.start_pose import start_pose
 
 router = APIRouter(tags=["solve"])
 _INCOMING: TypeAdapter[SolveMessageIn] = TypeAdapter(SolveMessageIn)
-SMALL = 64  # samples that are solved in the event loop itself: a thread's hand-over would take longer
+_INVALID: dict[int | str, dict[str, Any]] = {422: {"description": "Validation Error"}}
+_BODY = {"required": True, "content": {"application/json": {"schema": {"$ref": "#/components/schemas/SolveIn"}}}}
 
 
-@router.post("/solve")
-async def solve_batch(body: SolveIn, services: ServicesDep) -> SolveOut:
+@router.post(
+    "/solve",
+    response_model=SolveOut,
+    openapi_extra={"requestBody": _BODY},
+    responses=_INVALID,
+)
+async def solve_batch(request: Request, services: ServicesDep) -> Response:
     """A batch of attitudes in, frame angles and errors out; no session needed."""
+    # Read, solved and written in a thread: a million samples take seconds, and a first solve compiles.
+    answer = await asyncio.to_thread(_solved, await request.body(), services)
+    return Response(answer, media_type="application/json")
+
+
+def _solved(content: bytes, services: Services) -> bytes:
+    try:
+        body = SolveIn.model_validate_json(content)
+    except ValidationError as error:
+        raise RequestValidationError([{**one, "loc": ("body", *one["loc"])} for one in error.errors()]) from None
     most = services.settings.max_solve_samples
     if len(body.time_s) > most:
         raise ApiError(413, "too-large", f"{len(body.time_s)} samples: this server solves up to {most} at once")
-    entry = await asyncio.to_thread(services.rigs.get, body.rig)
-    return await asyncio.to_thread(_solve, body, entry.rig)
+    return _solve(body, services.rigs.get(body.rig).rig).model_dump_json().encode()
 
 
 def _solve(body: SolveIn, rig: Rig) -> SolveOut:
@@ -78,32 +95,37 @@ async def solve_stream(socket: WebSocket, services: ServicesDep) -> None:
     is followed by a close, because the flight's state is not known any more.
     """
     await socket.accept()
-    flight: _Flight | None = None
+    conversation = _Conversation(services)
     try:
-        while True:
-            frame = await socket.receive()
-            if frame["type"] == "websocket.disconnect":
-                return
-            try:
-                message = _parsed(frame)
-                if isinstance(message, OpenSolve):
-                    flight = await asyncio.to_thread(_Flight, services, message)
-                    answer: Any = Opened(rig=message.rig, method=message.method)
-                elif flight is None:
-                    raise ApiError(422, "not-open", "expected an open message before samples")
-                elif len(message.time_s) <= SMALL:
-                    answer = flight.solve(message)
-                else:
-                    answer = await asyncio.to_thread(flight.solve, message)
-            except (ApiError, SolverError, ServerError, ValidationError) as error:
-                answer = SolveProblem(problem=problem_of(error))
-            except Exception as error:  # noqa: BLE001 - logged by problem_of; the client is not left without an answer
-                await socket.send_text(SolveProblem(problem=problem_of(error)).model_dump_json())
-                await socket.close(1011, "an error of the server")
-                return
-            await socket.send_text(answer.model_dump_json())
-    except WebSocketDisconnect:
+        while (frame := await socket.receive())["type"] != "websocket.disconnect":
+            await send_text(socket, await asyncio.to_thread(conversation.answer, frame))
+    except GoneError:
         return
+    except Exception as error:  # noqa: BLE001 - logged by problem_of; the client is not left without an answer
+        await close_for(socket, SolveProblem(problem=problem_of(error)).model_dump_json())
+
+
+class _Conversation:
+    """One connection. Answers in a thread, one message after another: even one sample may compile a kernel."""
+
+    def __init__(self, services: Services) -> None:
+        self._services = services
+        self._flight: _Flight | None = None
+
+    def answer(self, frame: Mapping[str, Any]) -> str:
+        """The answer to a frame, encoded; what the client did wrong is one too."""
+        try:
+            return self._answer(_parsed(frame)).model_dump_json()
+        except (ApiError, SolverError, ServerError, ValidationError) as error:
+            return SolveProblem(problem=problem_of(error)).model_dump_json()
+
+    def _answer(self, message: OpenSolve | SolveSamples) -> Opened | Solved:
+        if isinstance(message, OpenSolve):
+            self._flight = _Flight(self._services, message)
+            return Opened(rig=message.rig, method=message.method)
+        if self._flight is None:
+            raise ApiError(422, "not-open", "expected an open message before samples")
+        return self._flight.solve(message)
 
 
 def _parsed(frame: Mapping[str, Any]) -> OpenSolve | SolveSamples:
