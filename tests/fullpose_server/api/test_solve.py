@@ -171,8 +171,8 @@ def test_a_fault_of_the_servers_own_is_told_and_the_stream_is_closed(
         assert closed.value.rcvd.code == 1011
 
 
-def test_no_sample_is_solved_on_the_event_loop(server: LiveServer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Not even one: the first compiles its method's kernels, for seconds."""
+def test_no_first_sample_is_solved_on_the_event_loop(server: LiveServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It compiles its method's kernels, for seconds; once they are there, a few samples take less than a thread does."""
     threads: list[str] = []
 
     def noted(message: Any) -> Any:
