@@ -172,7 +172,7 @@ def test_a_fault_of_the_servers_own_is_told_and_the_stream_is_closed(
 
 
 def test_no_first_sample_is_solved_on_the_event_loop(server: LiveServer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It compiles its method's kernels, for seconds; once they are there, a few samples take less than a thread does."""
+    """It compiles its method's kernels, for seconds; with those there, a few samples take less than a thread does."""
     threads: list[str] = []
 
     def noted(message: Any) -> Any:
