@@ -6,11 +6,11 @@ from here, and has no time for the planner.
 
 import sys
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from fullpose._version import __version__
     from fullpose.attitude import (
         dcm_from_euler,
         dcm_from_quaternion,
@@ -31,12 +31,8 @@ if TYPE_CHECKING:
     from fullpose.solve import solve
     from fullpose.verify import verify
 
-try:
-    __version__ = version("fullpose")
-except PackageNotFoundError:  # run from a source tree that is not installed
-    __version__ = "0.0.0+source"
-
 _HOMES = {
+    "_version": ("__version__",),
     "attitude": (
         "dcm_from_euler", "dcm_from_quaternion", "euler_from_dcm", "euler_from_ned", "quaternion_from_dcm",
         "quaternion_from_euler", "quaternion_from_ned",

@@ -10,7 +10,7 @@ from fullpose.plan.least_error import feasible, follow, from_feasible, least_err
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.solution import EXACT, limited_code
-from fullpose.verify import payload_attitudes, verify
+from fullpose.verify import attitude_errors, payload_attitudes, verify
 
 DEG = np.pi / 180.0
 RIGS = builtin_rigs()
@@ -125,13 +125,14 @@ def test_following_keeps_the_limits_of_a_jumping_target():
     assert np.abs(x[-1] - np.clip(target[-1], LIMITED.position_min, LIMITED.position_max)).max() < 0.05
 
 
-def test_the_least_error_is_no_worse_than_where_it_began(too_fast):
+def test_the_squared_error_is_never_more_than_where_it_began(too_fast):
+    """That is what it minimises: a stretch that does not get better stays as it is."""
     t, C, _ = too_fast
     begin = feasible(t, C, np.empty((0, 4)), LIMITED, None)
-    found = from_feasible(t, C, begin, LIMITED, PlanOptions(), None)
-    before, after = (verify(t, x, LIMITED, C) for x in (begin, found.angles))
-    assert after.violations == ()
-    assert after.max_error <= before.max_error * 1.5
+    found = from_feasible(t, C, begin.copy(), LIMITED, PlanOptions(), None)
+    before, after = (attitude_errors(payload_attitudes(LIMITED, x), C)[0] for x in (begin, found.angles))
+    assert verify(t, found.angles, LIMITED).violations == ()
+    assert np.sum(after**2) <= np.sum(before**2)
 
 
 def test_an_exact_path_inside_the_limits_is_left_alone():
