@@ -368,8 +368,9 @@ def test_a_second_source_is_not_followed(tmp_path: Path) -> None:
                 assert snapshot.state == "live", snapshot.alarms
                 assert "live_second_source" in [a.code for a in snapshot.alarms]
                 assert set(answered) == {LiveStatus.DROPPED}
-                settled = [r for r in replies if r.status == LiveStatus.FOLLOWED][len(replies) // 2 :]
-                assert len(settled) > 100
+                later = replies[len(replies) // 2 :]  # it was regained by then; a starved machine answers fewer
+                settled = [r for r in later if r.status == LiveStatus.FOLLOWED]
+                assert len(settled) > len(later) / 4
                 assert max(r.lag_deg for r in settled) < 5.0
             await operator.until("armed")
 
