@@ -206,3 +206,27 @@ def payload_attitudes(axes: Integers, d: Array, F: Array) -> None:
     """`payload_attitude` of every row. d (n, 4) [rad], F (n, 3, 3)."""
     for k in range(d.shape[0]):
         payload_attitude(axes, d[k], F[k])
+
+
+@inner
+def rotate_back(e: Array, C: Array, G: Array) -> None:
+    """G <- exp(-[e]x) C, the attitude whose rotation error against C is e. e (3,) [rad], C, G (3, 3)."""
+    angle = math.sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2])
+    if angle > 1e-8:
+        a = math.sin(angle) / angle
+        half = math.sin(0.5 * angle) / angle
+        b = 2.0 * half * half
+    else:
+        a = 1.0
+        b = 0.5
+    for k in range(3):
+        # Rodrigues on each column c: c - a e x c + b e x (e x c)
+        c0 = C[0, k]
+        c1 = C[1, k]
+        c2 = C[2, k]
+        x0 = e[1] * c2 - e[2] * c1
+        x1 = e[2] * c0 - e[0] * c2
+        x2 = e[0] * c1 - e[1] * c0
+        G[0, k] = c0 - a * x0 + b * (e[1] * x2 - e[2] * x1)
+        G[1, k] = c1 - a * x1 + b * (e[2] * x0 - e[0] * x2)
+        G[2, k] = c2 - a * x2 + b * (e[0] * x1 - e[1] * x0)

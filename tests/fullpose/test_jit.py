@@ -8,8 +8,13 @@ import pytest
 
 import fullpose.kinematics
 from fullpose._jit import kernel
+from fullpose.methods.alm import MULTIPLIERS
+from fullpose.methods.clamped import LOCKS
+from fullpose.methods.state import FLIGHT
 
 SOLVER = Path(fullpose.kinematics.__file__).parent
+# What records hold is their holder's: an array of theirs is a view that nobody need count.
+FIELDS = {*(FLIGHT.names or ()), *(MULTIPLIERS.names or ()), *(LOCKS.names or ())}
 INNER = [
     pytest.param(node, id=f"{path.stem}.{node.name}")
     for path in sorted(SOLVER.rglob("*.py"))
@@ -35,7 +40,7 @@ def test_an_inner_kernel_makes_no_array_and_returns_none(function: ast.FunctionD
         assert not isinstance(node, ast.List | ast.ListComp | ast.Set | ast.Dict)
         if isinstance(node, ast.Attribute):
             assert isinstance(node.value, ast.Name)
-            assert node.value.id == "math" or node.attr in ("inf", "rint", "shape")
+            assert node.value.id == "math" or node.attr in ("inf", "rint", "shape") or node.attr in FIELDS
     assert function.returns is not None
     returned = ast.unparse(function.returns)
     for word in ("float", "int", "bool", "None", "tuple"):

@@ -16,6 +16,7 @@ from fullpose.kinematics import (
     null_vector,
     payload_attitude,
     payload_attitudes,
+    rotate_back,
     rotation_error,
     self_motion,
     singularity_measure,
@@ -162,3 +163,16 @@ def test_matrix_error_sees_the_largest_entry_and_nan() -> None:
     assert matrix_error(F, C) == 0.25
     C[0, 0] = np.nan
     assert np.isnan(matrix_error(F, C))
+
+
+@given(st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array))
+def test_rotate_back_is_undone_by_the_rotation_error(e: NDArray[np.float64]) -> None:
+    C = Rotation.random(random_state=4).as_matrix()
+    G = np.empty((3, 3))
+    rotate_back(e, C, G)
+    np.testing.assert_allclose(G, Rotation.from_rotvec(e).as_matrix().T @ C, atol=1e-14)
+    out = np.empty(3)
+    angle = rotation_error(G, C, out)
+    if np.linalg.norm(e) < 3.0:
+        assert angle == pytest.approx(np.linalg.norm(e), abs=1e-12)
+        np.testing.assert_allclose(out, e, atol=1e-9)

@@ -16,47 +16,35 @@ held again, for most flights to the end.
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Protocol
 
 import numpy as np
 
-from fullpose._jit import inlined, inner, kernel
-from fullpose._typing import Array, Codes, Counts, Integers
+from fullpose._jit import inlined, inner
+from fullpose._typing import Array
 from fullpose.charts import project_inner
 from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose, rotation_error
-from fullpose.limits import WEIGHT, inside, limit_table
-from fullpose.methods.base import Block, StepMethod
-from fullpose.methods.start_pose import start_pose
-from fullpose.methods.state import (
-    CLOCK,
-    CODE,
-    DAMPING,
-    FRESH,
-    GUESS,
-    HI,
-    INCREMENT,
-    LO,
-    NULL,
-    PHASE,
-    POSE,
-    ROWS,
-    SHIFT,
-    STEP,
-    TOLERANCE,
-    advance,
+from fullpose.limits import WEIGHT, inside
+from fullpose.methods.base import StepMethod, Stepper
+from fullpose.methods.limited import (
+    Gains,
+    LimitedStepper,
     binding_code,
+    block_kernel,
     finish,
+    flight_from,
     goal_from,
-    hold_position,
-    new_state,
+    least_squares_step,
     null_space_increment,
     outermost_code,
-    prepare,
+    shift_box,
 )
+from fullpose.methods.state import Flight
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
-from fullpose.step import box_least_squares, quadratic_step, solve_symmetric, squared_damping
+from fullpose.step import quadratic_step, solve_symmetric
 
 
 class Mode(StrEnum):
@@ -106,95 +94,138 @@ class AlmOptions(Options):
 
 HELD = math.radians(1e-9)  # in open loop, a sample within this of the attitude has nothing to make up for
 
-# Rows of the multipliers' work array (MULTIPLIER_ROWS, 5): lambda, mu of both sides, then 4 x 4 with a column on the
-# right: J^T J and J^T e, K and b
-EQUALITY, LOWER, UPPER, PRODUCTS, SYSTEM = 0, 1, 2, 3, 7
-MULTIPLIER_ROWS = 11
 MOST_CHANGES = 5  # of the active bounds between two updates of the multipliers
 
 
+class Multipliers(Protocol):
+    """The iteration's constants and its unknowns, as `MULTIPLIERS` lays them out."""
+
+    mode: int  # a `Mode` by its place
+    penalty: float
+    growth: float
+    max_penalty: float
+    residual: float
+    max_iterations: int
+    equality: Array  # (3,) lambda
+    lower: Array  # (4,) mu of the lower bounds
+    upper: Array
+    products: Array  # (4, 5) J^T J and J^T e
+    system: Array  # (4, 5) K and b
+
+
+MULTIPLIERS = np.dtype(
+    (
+        np.record,
+        np.dtype(
+            [
+                ("mode", "i8"), ("penalty", "f8"), ("growth", "f8"), ("max_penalty", "f8"), ("residual", "f8"),
+                ("max_iterations", "i8"), ("equality", "f8", 3), ("lower", "f8", 4), ("upper", "f8", 4),
+                ("products", "f8", (4, 5)), ("system", "f8", (4, 5)),
+            ],
+            align=True,
+        ),
+    )
+)  # fmt: skip
+
+
 @inlined
-def active_bounds(room: Array, r: float, lo: Array, hi: Array, s: Array) -> int:
+def active_bounds(own: Multipliers, r: float, lo: Array, hi: Array, s: Array) -> int:
     """Base 3, a digit a frame: no bound's term in M counts at s, the lower one's does (1), the upper one's (2)."""
     active = 0
     for i in range(3, -1, -1):
         active *= 3
-        if room[UPPER, i] + r * (s[i] - hi[i]) > 0.0:
+        if own.upper[i] + r * (s[i] - hi[i]) > 0.0:
             active += 2
-        elif room[LOWER, i] + r * (lo[i] - s[i]) > 0.0:
+        elif own.lower[i] + r * (lo[i] - s[i]) > 0.0:
             active += 1
     return active
 
 
-@inner
-def multiplier_step(
-    J: Array, weight: Array, g: Array, e: Array, lo: Array, hi: Array, tuning: Array, room: Array, s: Array
-) -> int:
-    """s <- the step by the augmented multiplier method; returns the iterations, negative where it has not settled.
-
-    J (3, 4); e (3,); weight, g, s (4,); lo, hi (4,) bounds of the step; room (MULTIPLIER_ROWS, 5) to work in.
-    tuning: penalty, growth, max_penalty, residual, max_iterations.
-    """
-    r = tuning[0]
-    residual = tuning[3]
-    P = room[PRODUCTS : PRODUCTS + 4]
-    K = room[SYSTEM : SYSTEM + 4]
-    b = room[SYSTEM : SYSTEM + 4, 4]
-    for i in range(5):
-        room[EQUALITY, i] = 0.0
-        room[LOWER, i] = 0.0
-        room[UPPER, i] = 0.0
+@inlined
+def minimum_of_m(flight: Flight, own: Multipliers, r: float, active: int) -> bool:
+    """step <- the minimum of M at penalty r with the bounds of `active`; false where it has none."""
+    J = flight.J
+    P = own.products
+    K = own.system
+    rest = active
     for i in range(4):
-        s[i] = 0.0
-        P[i, 4] = J[0, i] * e[0] + J[1, i] * e[1] + J[2, i] * e[2]
+        weight = flight.limits[WEIGHT, i]
+        K[i, 4] = weight * flight.increment[i] + r * P[i, 4]
+        for k in range(3):
+            K[i, 4] -= J[k, i] * own.equality[k]
         for j in range(i + 1):
-            P[i, j] = J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j]
-    active = active_bounds(room, r, lo, hi, s)
+            K[i, j] = r * P[i, j]
+        K[i, i] += weight
+        if rest % 3 == 1:
+            K[i, i] += r
+            K[i, 4] += r * flight.lo[i] + own.lower[i]
+        elif rest % 3 == 2:
+            K[i, i] += r
+            K[i, 4] += r * flight.hi[i] - own.upper[i]
+        rest //= 3
+    if not solve_symmetric(K, K[:, 4], 4):
+        return False
+    for i in range(4):
+        flight.step[i] = K[i, 4]
+    return True
+
+
+@inlined
+def update_multipliers(flight: Flight, own: Multipliers, r: float) -> float:
+    """Move lambda and mu up their gradients; returns the largest violation of the constraints and complementarity."""
+    J = flight.J
+    s = flight.step
+    violation = 0.0
+    for k in range(3):
+        h = J[k, 0] * s[0] + J[k, 1] * s[1] + J[k, 2] * s[2] + J[k, 3] * s[3] - flight.e[k]
+        own.equality[k] += r * h
+        violation = max(violation, abs(h))
+    for i in range(4):
+        # Complementarity: a bound is kept, and its multiplier is zero unless it is met.
+        above = s[i] - flight.hi[i]
+        below = flight.lo[i] - s[i]
+        violation = max(violation, abs(max(above, -own.upper[i] / r)), abs(max(below, -own.lower[i] / r)))
+        own.upper[i] = max(0.0, own.upper[i] + r * above)
+        own.lower[i] = max(0.0, own.lower[i] + r * below)
+    return violation
+
+
+@inner
+def multiplier_step(flight: Flight, own: Multipliers) -> int:
+    """step <- the one by the augmented multiplier method; returns the iterations, negative where it has not settled.
+
+    Of the flight J, e, increment and weights are read, and lo, hi, which are bounds of the step here.
+    """
+    J = flight.J
+    e = flight.e
+    s = flight.step
+    r = own.penalty
+    for i in range(3):
+        own.equality[i] = 0.0
+    for i in range(4):
+        own.lower[i] = 0.0
+        own.upper[i] = 0.0
+        s[i] = 0.0
+        own.products[i, 4] = J[0, i] * e[0] + J[1, i] * e[1] + J[2, i] * e[2]
+        for j in range(i + 1):
+            own.products[i, j] = J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j]
+    active = active_bounds(own, r, flight.lo, flight.hi, s)
     changes = 0
-    for iteration in range(1, int(tuning[4]) + 1):
-        rest = active
-        for i in range(4):
-            b[i] = weight[i] * g[i] + r * P[i, 4]
-            for k in range(3):
-                b[i] -= J[k, i] * room[EQUALITY, k]
-            for j in range(i + 1):
-                K[i, j] = r * P[i, j]
-            K[i, i] += weight[i]
-            if rest % 3 == 1:
-                K[i, i] += r
-                b[i] += r * lo[i] + room[LOWER, i]
-            elif rest % 3 == 2:
-                K[i, i] += r
-                b[i] += r * hi[i] - room[UPPER, i]
-            rest //= 3
-        if not solve_symmetric(K, b, 4):
+    for iteration in range(1, own.max_iterations + 1):
+        if not minimum_of_m(flight, own, r, active):
             return -iteration
-        for i in range(4):
-            s[i] = b[i]
         # Multipliers answer for a minimum of M only where the bounds reckoned with are those that count there.
         before = active
-        active = active_bounds(room, r, lo, hi, s)
+        active = active_bounds(own, r, flight.lo, flight.hi, s)
         if active != before and changes < MOST_CHANGES:
             changes += 1
             continue
         changes = 0
-        worst = 0.0
-        for k in range(3):
-            h = J[k, 0] * s[0] + J[k, 1] * s[1] + J[k, 2] * s[2] + J[k, 3] * s[3] - e[k]
-            room[EQUALITY, k] += r * h
-            worst = max(worst, abs(h))
-        for i in range(4):
-            # Complementarity: a bound is kept, and its multiplier is zero unless it is met.
-            above = s[i] - hi[i]
-            below = lo[i] - s[i]
-            worst = max(worst, abs(max(above, -room[UPPER, i] / r)), abs(max(below, -room[LOWER, i] / r)))
-            room[UPPER, i] = max(0.0, room[UPPER, i] + r * above)
-            room[LOWER, i] = max(0.0, room[LOWER, i] + r * below)
-        if worst <= residual:
+        if update_multipliers(flight, own, r) <= own.residual:
             return iteration
-        r = min(r * tuning[1], tuning[2])
-        active = active_bounds(room, r, lo, hi, s)
-    return -int(tuning[4])
+        r = min(r * own.growth, own.max_penalty)
+        active = active_bounds(own, r, flight.lo, flight.hi, s)
+    return -int(own.max_iterations)
 
 
 @inner
@@ -208,154 +239,92 @@ def reaches(J: Array, s: Array, e: Array, residual: float) -> bool:
 
 
 @inner
-def possible(
-    J: Array, manipulability: float, weight: Array, nowhere: Array, e: Array, work: Array, residual: float
-) -> bool:
-    """Whether a step inside the box makes the increment e (3,) [rad], by the closed form; work[POSE] is filled.
+def possible(flight: Flight, manipulability: float, residual: float) -> bool:
+    """Whether a step inside the box lo, hi (of the step) makes the increment e, by the closed form; next is filled.
 
-    `nowhere`: zeros (4,), for work[LO] and work[HI] are bounds of the step; residual as in `reaches`.
+    residual as in `reaches`.
     """
-    step = work[POSE]
+    nowhere = flight.damping
+    for i in range(4):
+        nowhere[i] = 0.0
     return quadratic_step(
-        J, work[NULL], manipulability, weight, nowhere, work[INCREMENT], e, work[LO], work[HI], work[TOLERANCE], step
-    ) and reaches(J, step, e, residual)
+        flight.J, flight.null, manipulability, flight.limits[WEIGHT], nowhere, flight.increment, flight.e,
+        flight.lo, flight.hi, flight.tolerance, flight.next,
+    ) and reaches(flight.J, flight.next, flight.e, residual)  # fmt: skip
 
 
 @inner
-def hold_inner(horizontal: bool, G: Array, work: Array) -> None:
-    """work[POSE] <- the exact pose for G (3, 3) with the inner angle of work[POSE], where that lies inside the box."""
-    y = work[GUESS]
-    project_inner(horizontal, G, work[POSE], y)
-    if inside(y, work[LO], work[HI], work[TOLERANCE]):
+def hold_inner(flight: Flight) -> None:
+    """next <- the exact pose for the goal with the inner angle of next, where that lies inside the box."""
+    y = flight.guess
+    project_inner(flight.horizontal, flight.goal, flight.next, y)
+    if inside(y, flight.lo, flight.hi, flight.tolerance):
         for i in range(4):
-            work[POSE, i] = y[i]
+            flight.next[i] = y[i]
 
 
-@kernel
-def alm_block(
-    horizontal: bool,
-    axes: Integers,
-    table: Array,
-    gains: Array,
-    tuning: Array,
-    mode: int,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    target: Array,
-    angles: Array,
-    limited: Codes,
-    iterations: Counts,
-) -> None:
-    """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
+@inner
+def least_error_step(flight: Flight, own: Multipliers, manipulability: float) -> int:
+    """step <- where no step inside the box makes the increment, the one that makes the error least; its code.
 
-    gains: avoidance, centring, homing, recovery; tuning: of `multiplier_step`; mode: a `Mode` by its place.
+    `EXACT`, and the iteration's step stays, where there is one.
     """
-    work = np.empty((ROWS, 4))
-    room = np.empty((MULTIPLIER_ROWS, 5))
-    A = np.empty((4, 5))
-    J = np.empty((3, 4))
-    F = np.empty((3, 3))
-    G = np.empty((3, 3))
-    e = np.empty(3)
-    lo_code = np.empty(4, np.int16)
-    hi_code = np.empty(4, np.int16)
-    nowhere = np.zeros(4)
-    d = state[0:4]
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        if state[PHASE] == FRESH:
-            iterations[k] = 0
-            code = int(state[CODE])
-            for i in range(4):
-                work[POSE, i] = d[i]
-        else:
-            h = time[k] - state[CLOCK]
-            prepare(table, state, h, work, lo_code, hi_code)
-            null_space_increment(table, d, h, gains, work[INCREMENT])
-            manipulability = four_axis_pose(horizontal, d, F, J, work[NULL])
-            if mode != OPEN_LOOP:
-                on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
-            else:
-                on_target = int(state[CODE]) == EXACT or rotation_error(F, target, e) <= HELD
-                rotation_error(C, target, e)
-            for i in range(4):
-                work[LO, i] -= d[i]
-                work[HI, i] -= d[i]
-            count = multiplier_step(J, table[WEIGHT], work[INCREMENT], e, work[LO], work[HI], tuning, room, work[STEP])
-            iterations[k] = abs(count)
-            code = EXACT
-            # Not settled: at the cap, or because no step inside the box has this increment.
-            if (
-                count < 0
-                and mode != EXACT_CURVE
-                and not possible(J, manipulability, table[WEIGHT], nowhere, e, work, tuning[3])
-            ):
-                for i in range(4):
-                    work[DAMPING, i] = (SHIFT + squared_damping(manipulability)) * table[WEIGHT, i]
-                binding = box_least_squares(J, e, work[DAMPING], work[INCREMENT], work[LO], work[HI], work[STEP], A)
-                code = binding_code(binding, lo_code, hi_code)
-                if code == EXACT and not reaches(J, work[STEP], e, tuning[3]):
-                    code = outermost_code(work[STEP], work[LO], work[HI], lo_code, hi_code)
-            for i in range(4):
-                work[LO, i] += d[i]
-                work[HI, i] += d[i]
-                work[GUESS, i] = d[i] + work[STEP, i]
-                # Within the residual the settled step may be outside its box; the limits hold to the last digit.
-                work[POSE, i] = min(max(work[GUESS, i], work[LO, i]), work[HI, i])
-            if mode == EXACT_CURVE:
-                _, code = finish(horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code)
-            elif code == EXACT:
-                if mode == EXACT_INNER:
-                    hold_inner(horizontal, G, work)
-                if not on_target:
-                    code = int(state[CODE])
-        for i in range(4):
-            angles[k, i] = work[POSE, i]
-        limited[k] = code
-        advance(state, target, time[k], work[POSE], code, C)
+    if possible(flight, manipulability, own.residual):
+        return EXACT
+    code = binding_code(flight, least_squares_step(flight, manipulability))
+    if code == EXACT and not reaches(flight.J, flight.step, flight.e, own.residual):
+        code = outermost_code(flight, flight.step)
+    return code
 
 
-class AlmStepper:
-    """One flight in progress with `alm`."""
+@inner
+def alm_step(flight: Flight, parameters: Array, C: Array) -> tuple[int, int]:
+    """See `limited.propose`; parameters: (1,) `MULTIPLIERS`."""
+    own: Multipliers = parameters[0]
+    null_space_increment(flight)
+    manipulability = four_axis_pose(flight.horizontal, flight.pose, flight.F, flight.J, flight.null)
+    if own.mode != OPEN_LOOP:
+        goal_from(flight, C)
+    else:
+        flight.on_target = flight.code == EXACT or rotation_error(flight.F, flight.target, flight.e) <= HELD
+        rotation_error(C, flight.target, flight.e)
+    shift_box(flight, flight.pose, -1.0)
+    count = multiplier_step(flight, own)
+    code = EXACT
+    # Not settled: at the cap, or because no step inside the box has this increment.
+    if count < 0 and own.mode != EXACT_CURVE:
+        code = least_error_step(flight, own, manipulability)
+    shift_box(flight, flight.pose, 1.0)
+    for i in range(4):
+        flight.guess[i] = flight.pose[i] + flight.step[i]
+        # Within the residual the settled step may be outside its box; the limits hold to the last digit.
+        flight.next[i] = min(max(flight.guess[i], flight.lo[i]), flight.hi[i])
+    if own.mode == EXACT_CURVE:
+        _, code = finish(flight)
+    elif code == EXACT:
+        if own.mode == EXACT_INNER:
+            hold_inner(flight)
+        if not flight.on_target:
+            code = int(flight.code)
+    return abs(count), code
 
-    def __init__(self, rig: Rig, options: AlmOptions, start: Array | None, attitude: Array) -> None:
-        if not rig.geometry.redundant:
-            raise MethodError(f"alm needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
-        self._rig = rig
-        self._mode = list(Mode).index(options.mode)
-        self._table = limit_table(rig)
-        self._gains = np.array([options.avoidance, options.centring, options.homing, options.recovery])
-        self._tuning = np.array(
-            [options.penalty, options.growth, options.max_penalty, options.residual, options.max_iterations]
-        )
-        self._state = new_state(*start_pose(rig, attitude, start))
-        self._target = np.array(attitude, order="C")
 
-    def begin_at_rest(self, dt: float) -> None:
-        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
-        hold_position(self._state, dt)
+alm_block = block_kernel("alm_block", alm_step)
 
-    def block(self, time: Array, attitude: Array) -> Block:
-        """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
-        m = len(time)
-        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
-        alm_block(
-            self._rig.geometry.horizontal,
-            self._rig.axes,
-            self._table,
-            self._gains,
-            self._tuning,
-            self._mode,
-            time,
-            attitude,
-            self._state,
-            self._target,
-            out.angles,
-            out.limited,
-            out.iterations,
-        )
-        return out
+
+def multipliers(options: AlmOptions) -> Multipliers:
+    """The record of an iteration with these options."""
+    own: Multipliers = np.zeros(1, MULTIPLIERS)[0]
+    own.mode = list(Mode).index(options.mode)
+    own.penalty, own.growth, own.max_penalty = options.penalty, options.growth, options.max_penalty
+    own.residual, own.max_iterations = options.residual, options.max_iterations
+    return own
+
+
+def _stepper(rig: Rig, options: AlmOptions, start: Array | None, attitude: Array) -> Stepper:
+    gains = Gains(options.avoidance, options.centring, options.homing, options.recovery)
+    parameters = np.array([multipliers(options)], MULTIPLIERS)
+    return LimitedStepper(alm_block, parameters, gains, flight_from("alm", rig, start, attitude))
 
 
 METHOD = StepMethod(
@@ -363,5 +332,5 @@ METHOD = StepMethod(
     source="Zhao et al. 2025, doi 10.19306/j.cnki.2095-8110.2025.03.014",
     claims_limits=True,
     options=AlmOptions,
-    stepper=AlmStepper,
+    stepper=_stepper,
 )

@@ -13,41 +13,22 @@ what made it leave.
 
 Three frames left free have a pole of their own, where no least-squares step turns them about the axis that is lost:
 they would stand there, free to move, for the rest of the flight. There they are re-solved in closed form
-(`tracking.settle`), if that pose is inside the ranges. That is ours: the paper's frames are not locked for so long.
+(`limited.settle`), if that pose is inside the ranges. That is ours: the paper's frames are not locked for so long.
 """
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fullpose._jit import inner, kernel
-from fullpose._typing import Array, Codes, Counts, Integers
+from fullpose._jit import inner
+from fullpose._typing import Array, Flags
 from fullpose.kinematics import jacobian, null_vector, payload_attitude, rotation_error
-from fullpose.limits import WEIGHT, limit_table
-from fullpose.methods.base import Block, StepMethod, Stepper
-from fullpose.methods.start_pose import start_pose
-from fullpose.methods.state import (
-    CLOCK,
-    CODE,
-    FRESH,
-    GUESS,
-    HI,
-    INCREMENT,
-    LO,
-    PHASE,
-    POSE,
-    ROWS,
-    advance,
-    binding_code,
-    goal,
-    hold_position,
-    new_state,
-    prepare,
-    settle,
-)
-from fullpose.methods.unlimited import require_fourth_axis
+from fullpose.limits import WEIGHT
+from fullpose.methods.base import StepMethod, Stepper
+from fullpose.methods.limited import Gains, LimitedStepper, binding_code, block_kernel, flight_from, goal, settle
+from fullpose.methods.state import Flight
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
@@ -71,13 +52,43 @@ class ClampedOptions(Options):
     recovery: float = ranged(0.5, 0.0, 1.0, open=True)
 
 
-@kernel
-def free_step(J: Array, weight: Array, free: NDArray[np.bool_], e: Array, damping: float, A: Array, p: Array) -> None:
-    """p <- the free frames' least-norm step for e; with two or fewer free, their least-squares one.
+class Locks(Protocol):
+    """What a sample's lockings work with, as `LOCKS` lays it out."""
 
-    The entries of the locked frames are left. J (3, 4); weight, free, p (4,); e (3,); A (3, 4) is room to work in.
+    tolerance: float  # [rad]
+    max_iterations: int
+    minors: Array  # (4,) manipulability of the three frames left without each; infinite: their step is not damped
+    lo: Array  # (4,) [rad] bounds of the step
+    hi: Array
+    free: Flags  # (4,) the frames that are not locked
+    step: Array  # (4,) [rad]
+    rest: Array  # (3,) [rad] what the locked frames leave of the increment
+    system: Array  # (3, 4)
+
+
+LOCKS = np.dtype(
+    (
+        np.record,
+        np.dtype(
+            [
+                ("tolerance", "f8"), ("max_iterations", "i8"), ("minors", "f8", 4), ("lo", "f8", 4), ("hi", "f8", 4),
+                ("free", "u1", 4), ("step", "f8", 4), ("rest", "f8", 3), ("system", "f8", (3, 4)),
+            ],
+            align=True,
+        ),
+    )
+)  # fmt: skip
+
+
+@inner
+def free_step(J: Array, weight: Array, damping: float, locks: Locks) -> None:
+    """step <- the free frames' least-norm step for the rest; with two or fewer free, their least-squares one.
+
+    The entries of the locked frames are left. J (3, 4); weight (4,).
     """
+    A = locks.system
     y = A[:, 3]
+    free = locks.free
     count = 0
     for i in range(4):
         if free[i]:
@@ -85,7 +96,7 @@ def free_step(J: Array, weight: Array, free: NDArray[np.bool_], e: Array, dampin
     if count > 2:
         # W^-1 J^T (J W^-1 J^T + damping I)^-1 e
         for r in range(3):
-            y[r] = e[r]
+            y[r] = locks.rest[r]
             for c in range(r + 1):
                 A[r, c] = damping if r == c else 0.0
                 for i in range(4):
@@ -94,14 +105,14 @@ def free_step(J: Array, weight: Array, free: NDArray[np.bool_], e: Array, dampin
         solved = solve_symmetric(A, y, 3)
         for i in range(4):
             if free[i]:
-                p[i] = (J[0, i] * y[0] + J[1, i] * y[1] + J[2, i] * y[2]) / weight[i] if solved else 0.0
+                locks.step[i] = (J[0, i] * y[0] + J[1, i] * y[1] + J[2, i] * y[2]) / weight[i] if solved else 0.0
         return
     # (J^T J + damping W)^-1 J^T e over the free columns: the other form has no inverse with fewer columns than rows.
     m = 0
     for i in range(4):
         if not free[i]:
             continue
-        y[m] = J[0, i] * e[0] + J[1, i] * e[1] + J[2, i] * e[2]
+        y[m] = J[0, i] * locks.rest[0] + J[1, i] * locks.rest[1] + J[2, i] * locks.rest[2]
         k = 0
         for j in range(i + 1):
             if free[j]:
@@ -113,57 +124,45 @@ def free_step(J: Array, weight: Array, free: NDArray[np.bool_], e: Array, dampin
     m = 0
     for i in range(4):
         if free[i]:
-            p[i] = y[m] if solved else 0.0
+            locks.step[i] = y[m] if solved else 0.0
             m += 1
 
 
-@kernel
-def clamped_step(
-    J: Array,
-    manipulability: float,
-    minors: Array,
-    weight: Array,
-    e: Array,
-    lo: Array,
-    hi: Array,
-    free: NDArray[np.bool_],
-    A: Array,
-    p: Array,
-) -> int:
-    """p <- the step in [lo, hi] by locking the frame that leaves by most; returns the first bound locked, or 0.
+@inner
+def clamped_step(J: Array, manipulability: float, weight: Array, e: Array, locks: Locks) -> int:
+    """step <- the one in [lo, hi] by locking the frame that leaves by most; returns the first bound locked, or 0.
 
-    A bound is 1 + 2 frame + (1 at the upper one). manipulability: of J; minors (4,): of the three frames
-    left without each, or infinite where their step is not to be damped. lo, hi, p (4,) are of the step; free (4,) and
-    A (3, 4) are filled.
+    A bound is 1 + 2 frame + (1 at the upper one). J (3, 4) and its manipulability; weight (4,); e (3,). The bounds and
+    minors of the locks are read, the rest of them is filled.
     """
-    r = np.empty(3)
+    p = locks.step
     first = 0
     damping = squared_damping(manipulability)
     for i in range(4):
-        free[i] = True
+        locks.free[i] = True
     locked = 0
     while True:
         for k in range(3):
-            r[k] = e[k]
+            locks.rest[k] = e[k]
             for i in range(4):
-                if not free[i]:
-                    r[k] -= J[k, i] * p[i]
-        free_step(J, weight, free, r, damping, A, p)
-        worst = 0.0
+                if not locks.free[i]:
+                    locks.rest[k] -= J[k, i] * p[i]
+        free_step(J, weight, damping, locks)
+        farthest = 0.0
         out = -1
         for i in range(4):
-            if free[i]:
-                excess = max(lo[i] - p[i], p[i] - hi[i])
-                if excess > worst:
-                    worst = excess
+            if locks.free[i]:
+                violation = max(locks.lo[i] - p[i], p[i] - locks.hi[i])
+                if violation > farthest:
+                    farthest = violation
                     out = i
         if out < 0:
             return first
-        upper = p[out] > hi[out]
-        p[out] = hi[out] if upper else lo[out]
-        free[out] = False
+        upper = p[out] > locks.hi[out]
+        p[out] = locks.hi[out] if upper else locks.lo[out]
+        locks.free[out] = False
         locked += 1
-        damping = squared_damping(min(manipulability, minors[out]))
+        damping = squared_damping(min(manipulability, locks.minors[out]))
         if first == 0:
             first = 1 + 2 * out + (1 if upper else 0)
         if locked == 4:
@@ -179,142 +178,101 @@ def longest_of(p: Array) -> float:
     return longest
 
 
-@kernel
-def at_pole(J: Array, n: Array, free: NDArray[np.bool_]) -> bool:
-    """Whether three frames are free and next to their own pole. J (3, 4), n (4,) <- its null vector, free (4,)."""
+@inner
+def at_pole(J: Array, n: Array, locks: Locks) -> bool:
+    """Whether three frames are free and next to their own pole. J (3, 4), n (4,) <- its null vector."""
     manipulability = null_vector(J, n)
     locked = -1
     for i in range(4):
-        if not free[i]:
+        if not locks.free[i]:
             if locked >= 0:
                 return False
             locked = i
     return locked >= 0 and manipulability * abs(n[locked]) < DAMPED_BELOW
 
 
-@kernel
-def clamped_block(
-    horizontal: bool,
-    axes: Integers,
-    table: Array,
-    parameters: Array,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    target: Array,
-    angles: Array,
-    limited: Codes,
-    iterations: Counts,
-) -> None:
-    """Advance `state` (see `tracking`) over m samples. Parameters: tolerance, cap, recovery."""
-    work = np.empty((ROWS, 4))
-    F = np.empty((3, 3))
-    G = np.empty((3, 3))
-    J = np.empty((3, 4))
-    A = np.empty((3, 4))
-    n = np.empty(4)
-    e = np.empty(3)
-    p = np.empty(4)
-    lo = np.empty(4)
-    hi = np.empty(4)
-    free = np.empty(4, np.bool_)
-    undamped = np.full(4, np.inf)
-    lo_code = np.empty(4, np.int16)
-    hi_code = np.empty(4, np.int16)
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        x = angles[k]
+@inner
+def iterate(flight: Flight, locks: Locks) -> int:
+    """next += one clamped step toward the goal, e the error now; returns the first bound locked, or 0."""
+    x = flight.next
+    weight = flight.limits[WEIGHT]
+    jacobian(flight.axes, x, flight.J)
+    for i in range(4):
+        locks.lo[i] = flight.lo[i] - x[i]
+        locks.hi[i] = flight.hi[i] - x[i]
+        locks.minors[i] = np.inf
+    manipulability = null_vector(flight.J, flight.null)
+    bound = clamped_step(flight.J, manipulability, weight, flight.e, locks)
+    longest = longest_of(locks.step)
+    if longest > LONGEST:
+        # Next to the pole of the frames left, which without rate limits nothing else keeps short.
         for i in range(4):
-            x[i] = state[i]
-        code = EXACT
-        iterations[k] = 0
-        if state[PHASE] == FRESH:
-            code = int(state[CODE])
-        else:
-            h = time[k] - state[CLOCK]
-            prepare(table, state, h, work, lo_code, hi_code)
-            on_target = goal(table, axes, state, target, C, h, parameters[2], F, G, e)
-            bound = 0
-            for again in range(int(parameters[1])):
-                payload_attitude(axes, x, F)
-                # At least one step: the pose may be on target where its rate does not let it stay.
-                if rotation_error(G, F, e) <= parameters[0] and again > 0:
-                    break
-                jacobian(axes, x, J)
-                for i in range(4):
-                    lo[i] = work[LO, i] - x[i]
-                    hi[i] = work[HI, i] - x[i]
-                manipulability = null_vector(J, n)
-                now = clamped_step(J, manipulability, undamped, table[WEIGHT], e, lo, hi, free, A, p)
-                longest = longest_of(p)
-                if longest > LONGEST:
-                    # Next to the pole of the frames left, which without rate limits nothing else keeps short.
-                    for i in range(4):
-                        n[i] = manipulability * abs(n[i])
-                    now = clamped_step(J, manipulability, n, table[WEIGHT], e, lo, hi, free, A, p)
-                    longest = longest_of(p)
-                if bound == 0:
-                    bound = now
-                for i in range(4):
-                    x[i] = min(max(x[i] + p[i] * min(1.0, LONGEST / longest), work[LO, i]), work[HI, i])
-                iterations[k] += 1
-            payload_attitude(axes, x, F)
-            held = max(HELD, parameters[0])
-            if rotation_error(G, F, e) > held and at_pole(J, n, free):
-                for i in range(4):
-                    work[GUESS, i] = x[i]
-                    work[INCREMENT, i] = 0.0
-                if settle(horizontal, table[WEIGHT], state[0:4], G, work) > 0:
-                    for i in range(4):
-                        x[i] = work[POSE, i]
-                    bound = 0
-                    payload_attitude(axes, x, F)
-            if rotation_error(C, F, e) > held:
-                if bound > 0:
-                    code = binding_code(bound, lo_code, hi_code)
-                elif not on_target:
-                    code = int(state[CODE])
-        limited[k] = code
-        advance(state, target, time[k], x, code, C)
+            locks.minors[i] = manipulability * abs(flight.null[i])
+        bound = clamped_step(flight.J, manipulability, weight, flight.e, locks)
+        longest = longest_of(locks.step)
+    for i in range(4):
+        x[i] = min(max(x[i] + locks.step[i] * min(1.0, LONGEST / longest), flight.lo[i]), flight.hi[i])
+    return bound
 
 
-class ClampedStepper:
-    """One flight in progress with `clamped`."""
+@inner
+def settle_at_pole(flight: Flight) -> bool:
+    """next <- the closed form's pose from here, where it is inside the box; else next stays, and false."""
+    for i in range(4):
+        flight.guess[i] = flight.next[i]
+        flight.increment[i] = 0.0
+    if settle(flight) > 0:
+        return True
+    for i in range(4):
+        flight.next[i] = flight.guess[i]
+    return False
 
-    def __init__(self, rig: Rig, options: ClampedOptions, start: Array | None, attitude: Array) -> None:
-        require_fourth_axis("clamped", rig)
-        self._rig = rig
-        self._table = limit_table(rig)
-        self._parameters = np.array([options.tolerance, float(options.max_iterations), options.recovery])
-        self._state = new_state(*start_pose(rig, attitude, start))
-        self._target = np.array(attitude, order="C")
 
-    def begin_at_rest(self, dt: float) -> None:
-        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
-        hold_position(self._state, dt)
+@inner
+def clamped_sample(flight: Flight, parameters: Array, C: Array) -> tuple[int, int]:
+    """See `limited.propose`; parameters: (1,) `LOCKS`."""
+    locks: Locks = parameters[0]
+    x = flight.next
+    for i in range(4):
+        x[i] = flight.pose[i]
+    goal(flight, C)
+    bound = 0
+    count = 0
+    for again in range(locks.max_iterations):
+        payload_attitude(flight.axes, x, flight.F)
+        # At least one step: the pose may be on target where its rate does not let it stay.
+        if rotation_error(flight.goal, flight.F, flight.e) <= locks.tolerance and again > 0:
+            break
+        now = iterate(flight, locks)
+        if bound == 0:
+            bound = now
+        count += 1
+    payload_attitude(flight.axes, x, flight.F)
+    held = max(HELD, locks.tolerance)
+    if (
+        rotation_error(flight.goal, flight.F, flight.e) > held
+        and at_pole(flight.J, flight.null, locks)
+        and settle_at_pole(flight)
+    ):
+        bound = 0
+        payload_attitude(flight.axes, x, flight.F)
+    code = EXACT
+    if rotation_error(C, flight.F, flight.e) > held:
+        if bound > 0:
+            code = binding_code(flight, bound)
+        elif not flight.on_target:
+            code = int(flight.code)
+    return count, code
 
-    def block(self, time: Array, attitude: Array) -> Block:
-        """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
-        m = len(time)
-        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
-        clamped_block(
-            self._rig.geometry.horizontal,
-            self._rig.axes,
-            self._table,
-            self._parameters,
-            time,
-            np.ascontiguousarray(attitude),
-            self._state,
-            self._target,
-            out.angles,
-            out.limited,
-            out.iterations,
-        )
-        return out
+
+clamped_block = block_kernel("clamped_block", clamped_sample)
 
 
 def _stepper(rig: Rig, options: ClampedOptions, start: Array | None, attitude: Array) -> Stepper:
-    return ClampedStepper(rig, options, start, attitude)
+    locks = np.zeros(1, LOCKS)
+    locks["tolerance"], locks["max_iterations"] = options.tolerance, options.max_iterations
+    gains = Gains(0.0, 0.0, 0.0, options.recovery)
+    return LimitedStepper(clamped_block, locks, gains, flight_from("clamped", rig, start, attitude))
 
 
 METHOD = StepMethod(

@@ -4,34 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fullpose._jit import kernel
-from fullpose._typing import Array, Codes, Counts, Integers
-from fullpose.errors import MethodError
+from fullpose._jit import inner
+from fullpose._typing import Array
 from fullpose.kinematics import four_axis_pose
-from fullpose.limits import WEIGHT, limit_table
-from fullpose.methods.base import Block, StepMethod
-from fullpose.methods.start_pose import start_pose
-from fullpose.methods.state import (
-    CLOCK,
-    CODE,
-    FRESH,
-    GUESS,
-    HI,
-    INCREMENT,
-    LO,
-    NULL,
-    PHASE,
-    POSE,
-    ROWS,
-    TOLERANCE,
-    advance,
+from fullpose.limits import WEIGHT
+from fullpose.methods.base import StepMethod, Stepper
+from fullpose.methods.limited import (
+    Gains,
+    LimitedStepper,
+    block_kernel,
     finish,
+    flight_from,
     goal_from,
-    hold_position,
-    new_state,
     null_space_increment,
-    prepare,
 )
+from fullpose.methods.state import Flight
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 from fullpose.step import quadratic_step
@@ -55,102 +42,25 @@ class ExactOptions(Options):
     recovery: float = ranged(0.5, 0.0, 1.0, open=True)
 
 
-@kernel
-def exact_block(
-    horizontal: bool,
-    axes: Integers,
-    table: Array,
-    gains: Array,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    target: Array,
-    angles: Array,
-    limited: Codes,
-    iterations: Counts,
-) -> None:
-    """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
-
-    gains: avoidance, centring, homing, recovery.
-    """
-    work = np.empty((ROWS, 4))
-    J = np.empty((3, 4))
-    F = np.empty((3, 3))
-    G = np.empty((3, 3))
-    A = np.empty((4, 5))
-    e = np.empty(3)
-    lo_code = np.empty(4, np.int16)
-    hi_code = np.empty(4, np.int16)
-    d = state[0:4]
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        if state[PHASE] == FRESH:
-            code = int(state[CODE])
-            iterations[k] = 0
-            for i in range(4):
-                work[POSE, i] = d[i]
-        else:
-            h = time[k] - state[CLOCK]
-            prepare(table, state, h, work, lo_code, hi_code)
-            null_space_increment(table, d, h, gains, work[INCREMENT])
-            manipulability = four_axis_pose(horizontal, d, F, J, work[NULL])
-            on_target = goal_from(table, axes, state, target, C, h, gains[3], F, G, e)
-            quadratic_step(
-                J,
-                work[NULL],
-                manipulability,
-                table[WEIGHT],
-                d,
-                work[INCREMENT],
-                e,
-                work[LO],
-                work[HI],
-                work[TOLERANCE],
-                work[GUESS],
-            )
-            iterations[k], code = finish(
-                horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code
-            )
-        for i in range(4):
-            angles[k, i] = work[POSE, i]
-        limited[k] = code
-        advance(state, target, time[k], work[POSE], code, C)
+@inner
+def exact_step(flight: Flight, _parameters: Array, C: Array) -> tuple[int, int]:
+    """See `limited.propose`."""
+    null_space_increment(flight)
+    manipulability = four_axis_pose(flight.horizontal, flight.pose, flight.F, flight.J, flight.null)
+    goal_from(flight, C)
+    quadratic_step(
+        flight.J, flight.null, manipulability, flight.limits[WEIGHT], flight.pose, flight.increment, flight.e,
+        flight.lo, flight.hi, flight.tolerance, flight.guess,
+    )  # fmt: skip
+    return finish(flight)
 
 
-class ExactStepper:
-    """One flight in progress with `exact`."""
+exact_block = block_kernel("exact_block", exact_step)
 
-    def __init__(self, rig: Rig, options: ExactOptions, start: Array | None, attitude: Array) -> None:
-        if not rig.geometry.redundant:
-            raise MethodError(f"exact needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
-        self._rig = rig
-        self._table = limit_table(rig)
-        self._gains = np.array([options.avoidance, options.centring, options.homing, options.recovery])
-        self._state = new_state(*start_pose(rig, attitude, start))
-        self._target = np.array(attitude, order="C")
 
-    def begin_at_rest(self, dt: float) -> None:
-        """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
-        hold_position(self._state, dt)
-
-    def block(self, time: Array, attitude: Array) -> Block:
-        """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
-        m = len(time)
-        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
-        exact_block(
-            self._rig.geometry.horizontal,
-            self._rig.axes,
-            self._table,
-            self._gains,
-            time,
-            attitude,
-            self._state,
-            self._target,
-            out.angles,
-            out.limited,
-            out.iterations,
-        )
-        return out
+def _stepper(rig: Rig, options: ExactOptions, start: Array | None, attitude: Array) -> Stepper:
+    gains = Gains(options.avoidance, options.centring, options.homing, options.recovery)
+    return LimitedStepper(exact_block, np.empty(0), gains, flight_from("exact", rig, start, attitude))
 
 
 METHOD = StepMethod(
@@ -158,5 +68,5 @@ METHOD = StepMethod(
     source="the closed-form null-space step with the exact charts (Lin 2022; Zhao 2025, second optimisation)",
     claims_limits=True,
     options=ExactOptions,
-    stepper=ExactStepper,
+    stepper=_stepper,
 )

@@ -12,8 +12,7 @@ import numpy as np
 from fullpose._jit import kernel
 from fullpose._typing import Array
 from fullpose.errors import InputError
-from fullpose.kinematics import rotation_error
-from fullpose.methods.state import rotate_back
+from fullpose.kinematics import rotate_back, rotation_error
 
 SPACING = 0.005  # [s] between samples kept: a stage of the search is ten times as long
 CAPACITY = 1024

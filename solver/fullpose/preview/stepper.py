@@ -1,7 +1,7 @@
 """Method `preview`: attitude one sample at a time, with 0 to 2 s of known or predicted future.
 
 The step is the exact one inside a box that always can brake (`fullpose.step`, `fullpose.limits`,
-`fullpose.methods.state`). What is free, the place on the self-motion, follows a way found over the horizon
+`fullpose.methods.limited`). What is free, the place on the self-motion, follows a way found over the horizon
 (`fullpose.trajectory.beam_search`): the announced future, then the attitude predicted at the present body rate
 (`fullpose.preview.prediction`). The way is made again every few tens of milliseconds: `replan` returns a frozen
 job, whose `run` may be called in any thread or process, and `adopt` takes its result, late or not. So exactness is
@@ -15,36 +15,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from fullpose._jit import kernel
-from fullpose._typing import Array, Codes, Counts, Integers
+from fullpose._jit import inner
+from fullpose._typing import Array
 from fullpose.errors import MethodError
 from fullpose.kinematics import jacobian, null_vector
 from fullpose.limits import MAX, MIN, WEIGHT, limit_table
 from fullpose.methods.base import Block
-from fullpose.methods.start_pose import start_pose
-from fullpose.methods.state import (
-    CLOCK,
-    CODE,
-    FRESH,
-    GUESS,
-    HI,
-    INCREMENT,
-    LO,
-    MOVING,
-    NULL,
-    PAST,
-    PHASE,
-    POSE,
-    ROWS,
-    TOLERANCE,
-    advance,
+from fullpose.methods.limited import (
+    Gains,
+    LimitedStepper,
+    block_kernel,
     finish,
+    flight_from,
     goal,
-    hold_position,
-    new_state,
     null_space_increment,
-    prepare,
 )
+from fullpose.methods.start_pose import start_pose
+from fullpose.methods.state import FRESH, MOVING, Flight
 from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import Track
 from fullpose.preview.replan import FIT_WINDOW, Ahead, Replan
@@ -56,21 +43,21 @@ from fullpose.trajectory.nodes import fill_nodes, grid_circle
 START_GRID = 60  # nodes a turn among which a free start is chosen
 
 
-@kernel
-def follow(way_time: Array, way_pose: Array, way_rate: Array, state: Array, h: float, omega: float, out: Array) -> bool:
-    """out <- the increment (4,) [rad] over `h` [s] that follows the way; false where it does not reach so far.
+@inner
+def follow(flight: Flight, way_time: Array, way_pose: Array, way_rate: Array, omega: float) -> bool:
+    """increment <- the one that follows the way over the interval ahead; false where it does not reach so far.
 
-    Critically damped, bandwidth omega [1/s], by the implicit Euler step, which is stable for any h.
+    Critically damped, bandwidth omega [1/s], by the implicit Euler step, which is stable for any interval.
     """
-    t = state[CLOCK] + h
+    h = flight.ahead
+    t = flight.clock + h
     last = way_time.shape[0] - 1
-    if last < 1 or t > way_time[last] or state[CLOCK] < way_time[0] - 1e-9:
+    if last < 1 or t > way_time[last] or flight.clock < way_time[0] - 1e-9:
         return False
     j = min(int((t - way_time[0]) / (way_time[1] - way_time[0])), last - 1)
     span = way_time[j + 1] - way_time[j]
     s = (t - way_time[j]) / span
     a = 1.0 - s
-    moving = state[PHASE] == MOVING
     stiffness = h * omega * omega
     damping = 2.0 * omega
     for i in range(4):
@@ -81,98 +68,48 @@ def follow(way_time: Array, way_pose: Array, way_rate: Array, state: Array, h: f
         p = p0 + s * rise + s * a * (a * bend0 + s * bend1)
         v = (rise + (1.0 - 2.0 * s) * (a * bend0 + s * bend1) + s * a * (bend1 - bend0)) / span
         v_2 = (2.0 * (1.0 - 2.0 * s) * (bend1 - bend0) - 2.0 * (a * bend0 + s * bend1)) / (span * span)
-        if moving:
-            rate = state[4 + i] + h * (v_2 + omega * omega * (p - state[i]) + damping * v)
-            out[i] = h * rate / (1.0 + h * damping + h * stiffness)
+        if flight.phase == MOVING:
+            rate = flight.rate[i] + h * (v_2 + omega * omega * (p - flight.pose[i]) + damping * v)
+            flight.increment[i] = h * rate / (1.0 + h * damping + h * stiffness)
         else:
-            out[i] = p - state[i]
+            flight.increment[i] = p - flight.pose[i]
     return True
 
 
-@kernel
-def preview_block(
-    horizontal: bool,
-    axes: Integers,
-    table: Array,
-    gains: Array,
-    way_time: Array,
-    way_pose: Array,
-    way_rate: Array,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    target: Array,
-    angles: Array,
-    limited: Codes,
-    iterations: Counts,
-) -> None:
-    """Advance `state` over m samples: time (m,), attitude (m, 3, 3) in; angles (m, 4), limited, iterations (m,) out.
+@inner
+def preview_step(flight: Flight, way: tuple[Array, Array, Array, float], C: Array) -> tuple[int, int]:
+    """See `limited.propose`: the exact step, but for the null-space increment.
 
-    gains: avoidance, centring, homing (without a way), recovery, following. `exact_block`, but for
-    the null-space increment.
+    way: times (k,) [s], poses and rates (k, 4) there, bandwidth [1/s]; k = 0: there is none.
     """
-    work = np.empty((ROWS, 4))
-    J = np.empty((3, 4))
-    F = np.empty((3, 3))
-    G = np.empty((3, 3))
-    A = np.empty((4, 5))
-    e = np.empty(3)
-    lo_code = np.empty(4, np.int16)
-    hi_code = np.empty(4, np.int16)
-    d = state[0:4]
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        if state[PHASE] == FRESH:
-            code = int(state[CODE])
-            iterations[k] = 0
-            for i in range(4):
-                work[POSE, i] = d[i]
-        else:
-            h = time[k] - state[CLOCK]
-            prepare(table, state, h, work, lo_code, hi_code)
-            if not follow(way_time, way_pose, way_rate, state, h, gains[4], work[INCREMENT]):
-                null_space_increment(table, d, h, gains, work[INCREMENT])
-            on_target = goal(table, axes, state, target, C, h, gains[3], F, G, e)
-            jacobian(axes, d, J)
-            manipulability = null_vector(J, work[NULL])
-            quadratic_step(
-                J,
-                work[NULL],
-                manipulability,
-                table[WEIGHT],
-                d,
-                work[INCREMENT],
-                e,
-                work[LO],
-                work[HI],
-                work[TOLERANCE],
-                work[GUESS],
-            )
-            iterations[k], code = finish(
-                horizontal, axes, table, state, on_target, G, J, e, F, work, A, lo_code, hi_code
-            )
-        for i in range(4):
-            angles[k, i] = work[POSE, i]
-        limited[k] = code
-        advance(state, target, time[k], work[POSE], code, C)
+    if not follow(flight, way[0], way[1], way[2], way[3]):
+        null_space_increment(flight)
+    goal(flight, C)
+    jacobian(flight.axes, flight.pose, flight.J)
+    manipulability = null_vector(flight.J, flight.null)
+    quadratic_step(
+        flight.J, flight.null, manipulability, flight.limits[WEIGHT], flight.pose, flight.increment, flight.e,
+        flight.lo, flight.hi, flight.tolerance, flight.guess,
+    )  # fmt: skip
+    return finish(flight)
 
 
-class PreviewStepper:
+preview_block = block_kernel("preview_block", preview_step)
+
+
+class PreviewStepper(LimitedStepper):
     """One flight in progress with `preview`; a `fullpose.methods.base.Stepper` with a look-ahead."""
 
     def __init__(self, rig: Rig, options: PreviewOptions, start: Array | None, attitude: Array) -> None:
         """start (4,) [rad]: the pose to start near; None: where there is most room on the way that is known by then."""
-        if not rig.geometry.redundant:
-            raise MethodError(f"preview needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
+        gains = Gains(options.avoidance, options.centring, 0.0, options.recovery)
+        super().__init__(preview_block, (), gains, flight_from("preview", rig, start, attitude))
         self._rig, self._options = rig, options
         self._table = limit_table(rig)
         share = 1.0 - options.reserve
         frames = [replace(frame, max_acceleration=share * frame.max_acceleration) for frame in rig.frames]
         self._tight = replace(rig, frames=(frames[0], frames[1], frames[2], frames[3]))
-        self._gains = np.array([options.avoidance, options.centring, 0.0, options.recovery, options.following])
         self._free = start is None
-        self._state = new_state(*start_pose(rig, attitude, start))
-        self._target = np.array(attitude, order="C")
         self._track = Track(2.0 * FIT_WINDOW)
         self._asked = 0
         self.asked_at = -math.inf  # [s] when the last job was asked for
@@ -180,12 +117,12 @@ class PreviewStepper:
 
     def begin_at_rest(self, dt: float) -> None:
         """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
-        hold_position(self._state, dt)
+        super().begin_at_rest(dt)
         self._free = False
 
     def void(self) -> None:
         """What the source said of the future does not come."""
-        self._track.void(float(self._state[CLOCK]))
+        self._track.void(self._flight.clock)
 
     def offer(self, time: Array, attitude: Array) -> None:
         """The source's preview: time (m,) [s] increasing, attitude (m, 3, 3); what it said of those times is void.
@@ -197,16 +134,12 @@ class PreviewStepper:
 
     def block(self, time: Array, attitude: Array) -> Block:
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
-        m = len(time)
-        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
-        if self._free and self._state[PHASE] == FRESH:
+        if self._free and self._flight.phase == FRESH:
             self._choose_start(float(time[0]), attitude[0])
         way = self.way
-        preview_block(
-            self._rig.geometry.horizontal, self._rig.axes, self._table, self._gains, way.time, way.pose, way.rate,
-            time, attitude, self._state, self._target, out.angles, out.limited, out.iterations,
-        )  # fmt: skip
-        for k in range(m):
+        self._parameters = way.time, way.pose, way.rate, self._options.following
+        out = super().block(time, attitude)
+        for k in range(len(time)):
             self._track.flown(float(time[k]), attitude[k])
         self._track.forget(float(time[-1]))
         return out
@@ -214,22 +147,22 @@ class PreviewStepper:
     @property
     def due(self) -> bool:
         """Whether `replan_s` of flight have passed since the last job was asked for."""
-        return bool(self._state[PHASE] != FRESH and self._state[CLOCK] >= self.asked_at + self._options.replan_s - 1e-9)
+        return bool(self._flight.phase != FRESH and self._flight.clock >= self.asked_at + self._options.replan_s - 1e-9)
 
     def replan(self) -> Replan:
         """The job that finds the way from here. Raises `MethodError` before the first sample."""
-        if self._state[PHASE] == FRESH:
+        if self._flight.phase == FRESH:
             raise MethodError("preview: no sample has been flown, there is nothing to plan from")
-        moving = self._state[PHASE] == MOVING
-        self.asked_at = float(self._state[CLOCK])
+        moving = self._flight.phase == MOVING
+        self.asked_at = self._flight.clock
         return self._job(
-            self.asked_at, self._state[None, :4].copy(), self._state[None, 4:8].copy(),
-            float(self._state[PAST]) if moving else 0.0,
+            self.asked_at, self._flight.pose[None].copy(), self._flight.rate[None].copy(),
+            self._flight.past if moving else 0.0,
         )  # fmt: skip
 
     def adopt(self, way: Ahead) -> bool:
         """Follow a way from now on; false, and nothing changes, where it is older than the one in use or run out."""
-        if way.number <= self.way.number or way.time[-1] <= self._state[CLOCK]:
+        if way.number <= self.way.number or way.time[-1] <= self._flight.clock:
             return False
         self.way = way
         return True
@@ -244,13 +177,13 @@ class PreviewStepper:
         """The start with the cheapest way over what is known, of all nodes inside the ranges; else the nearest pose."""
         self._free = False
         poses = start_nodes(self._rig, self._table, attitude)
-        if not len(poses) or self._state[CODE] != EXACT:
+        if not len(poses) or self._flight.code != EXACT:
             return
         self._track.flown(time, attitude)
         way = self._job(time, poses, np.zeros_like(poses), 0.0).run()
         pose, code = start_pose(self._rig, attitude, way.pose[0])
         if code == EXACT:
-            self._state = new_state(pose, code)
+            self._flight.pose[:] = pose
             self.way = way
 
 

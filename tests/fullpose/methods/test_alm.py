@@ -9,7 +9,9 @@ from fullpose.attitude import dcm_from_quaternion
 from fullpose.compare import EXACT_WITHIN, failures
 from fullpose.errors import MethodError
 from fullpose.kinematics import jacobian, null_vector
-from fullpose.methods.alm import MULTIPLIER_ROWS, AlmOptions, Mode, multiplier_step
+from fullpose.limits import WEIGHT
+from fullpose.methods.alm import AlmOptions, Mode, multiplier_step, multipliers
+from fullpose.methods.state import new_flight
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import SCENARIOS, random_flight
 from fullpose.solution import EXACT
@@ -21,7 +23,6 @@ RIGS = builtin_rigs()
 DEG = np.pi / 180.0
 MODES = tuple(Mode)
 DEFAULT = AlmOptions()
-TUNING = np.array([DEFAULT.penalty, DEFAULT.growth, DEFAULT.max_penalty, DEFAULT.residual, DEFAULT.max_iterations])
 
 
 @settings(max_examples=400)
@@ -39,14 +40,17 @@ def test_the_iteration_finds_the_closed_form(seed: int, width: float) -> None:
     half = width * scale * random.uniform(0.2, 1.0, 4)
     middle = random.normal(size=4) * 0.3 * scale
     weight, g = np.exp(random.normal(size=4)), random.normal(size=4) * 0.2 * scale
-    x, s = np.empty(4), np.empty(4)
+    x = np.empty(4)
     lo, hi = middle - half, middle + half
     feasible = quadratic_step(J, n, manipulability, weight, np.zeros(4), g, e, lo, hi, np.zeros(4), x)
-    count = multiplier_step(J, weight, g, e, lo, hi, TUNING, np.empty((MULTIPLIER_ROWS, 5)), s)
+    flight = new_flight(RIGS["vertical-4"], d, EXACT, np.eye(3))
+    flight.J[:], flight.e[:], flight.increment[:], flight.lo[:], flight.hi[:] = J, e, g, lo, hi
+    flight.limits[WEIGHT] = weight
+    count = multiplier_step(flight, multipliers(DEFAULT))
     assert abs(count) <= DEFAULT.max_iterations
     if feasible:
         assert count > 0
-        np.testing.assert_allclose(s, x, atol=1e-8)
+        np.testing.assert_allclose(flight.step, x, atol=1e-8)
     else:
         assert count < 0
 

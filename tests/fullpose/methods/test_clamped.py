@@ -5,7 +5,7 @@ import pytest
 
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.kinematics import jacobian, null_vector
-from fullpose.methods.clamped import METHOD, ClampedOptions, clamped_step
+from fullpose.methods.clamped import LOCKS, METHOD, ClampedOptions, Locks, clamped_step
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import SCENARIOS
 from fullpose.solution import limited_name
@@ -16,9 +16,10 @@ RIGS = builtin_rigs()
 
 
 def step(J: np.ndarray, e: np.ndarray, lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
-    p, free, room, n = np.empty(4), np.empty(4, bool), np.empty((3, 4)), np.empty(4)
-    first = clamped_step(J, null_vector(J, n), np.full(4, np.inf), np.ones(4), e, lo, hi, free, room, p)
-    return p, free, first
+    locks: Locks = np.zeros(1, LOCKS)[0]
+    locks.minors[:], locks.lo[:], locks.hi[:] = np.inf, lo, hi
+    first = clamped_step(J, null_vector(J, np.empty(4)), np.ones(4), e, locks)
+    return locks.step.copy(), locks.free.astype(bool), first
 
 
 def random_jacobian(random: np.random.Generator) -> np.ndarray:

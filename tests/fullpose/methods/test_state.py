@@ -1,4 +1,4 @@
-"""The parts that `exact` and `alm` share, each against its definition."""
+"""What the methods that keep limits share, each against its definition."""
 
 import numpy as np
 import pytest
@@ -8,46 +8,16 @@ from scipy.spatial.transform import Rotation
 
 from fullpose._typing import Array
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
-from fullpose.limits import limit_table, tolerances
-from fullpose.methods.state import (
-    CODE,
-    GUESS,
-    HI,
-    INCREMENT,
-    LO,
-    POSE,
-    ROWS,
-    TOLERANCE,
-    advance,
-    give_way,
-    goal,
-    new_state,
-    null_space_increment,
-    outermost_code,
-    rotate_back,
-    settle,
-)
+from fullpose.limits import tolerances
+from fullpose.methods.limited import give_way, goal, null_space_increment, outermost_code, settle
+from fullpose.methods.state import Flight, advance, new_flight
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.solution import EXACT, limited_code
 from fullpose.verify import payload_attitudes
 
 RIG = builtin_rigs()["vertical-4"]
 LIMITED = limited_code(3, 0)
-VECTOR = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)
 POSE_ANGLES = st.lists(st.floats(-3.0, 3.0), min_size=4, max_size=4).map(np.array)
-
-
-@given(VECTOR)
-def test_rotate_back_is_undone_by_the_rotation_error(e: Array) -> None:
-    C = Rotation.random(random_state=4).as_matrix()
-    G = np.empty((3, 3))
-    rotate_back(e, C, G)
-    np.testing.assert_allclose(G, Rotation.from_rotvec(e).as_matrix().T @ C, atol=1e-14)
-    out = np.empty(3)
-    angle = rotation_error(G, C, out)
-    if np.linalg.norm(e) < 3.0:
-        assert angle == pytest.approx(np.linalg.norm(e), abs=1e-12)
-        np.testing.assert_allclose(out, e, atol=1e-9)
 
 
 @given(POSE_ANGLES)
@@ -56,30 +26,32 @@ def test_the_increment_follows_its_potentials(d: Array) -> None:
     rig = Rig(
         "test", Geometry.VERTICAL_4, (FrameLimits(-4.0, 4.0), FrameLimits(), FrameLimits(), FrameLimits(-3.0, 5.0))
     )
-    table, h, gains = limit_table(rig), 1e-3, np.array([0.7, 1.3, 0.2, 0.5])
+    h = 1e-3
+    flight = new_flight(rig, d, EXACT, np.eye(3))
+    flight.avoidance, flight.centring, flight.homing, flight.ahead = 0.7, 1.3, 0.2, h
 
     def potential(x: Array) -> float:
         m = np.sin(x[1]) ** 2 + np.cos(x[2]) ** 2
         stops = (x[0] / 4.0) ** 4 * 4.0 / 4.0 + ((x[3] - 1.0) / 4.0) ** 4 * 4.0 / 4.0
         return float(0.35 * np.log(m + 0.1) - 1.3 * stops - 0.1 * np.sum(x**2))
 
-    out = np.empty(4)
-    null_space_increment(table, d, h, gains, out)
+    null_space_increment(flight)
     step = 1e-6
     for i in range(4):
         ahead, behind = d.copy(), d.copy()
         ahead[i] += step
         behind[i] -= step
-        assert out[i] / h == pytest.approx((potential(ahead) - potential(behind)) / (2.0 * step), abs=1e-6)
+        assert flight.increment[i] / h == pytest.approx((potential(ahead) - potential(behind)) / (2.0 * step), abs=1e-6)
 
 
 def aim(off: float, code: int, h: float = 1e-3, recovery: float = 0.5) -> tuple[bool, float]:
     """(whether the goal is the target, error left there [rad]) for a rig `off` [rad] from a target at rest."""
     pose = np.array([0.0, 0.3, 0.2, off])
     C = payload_attitudes(RIG, np.array([[0.0, 0.3, 0.2, 0.0]]))[0]
-    F, G, e = np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
-    on_target = goal(limit_table(RIG), RIG.axes, new_state(pose, code), C, C, h, recovery, F, G, e)
-    return on_target, float(rotation_error(G, C, np.empty(3)))
+    flight = new_flight(RIG, pose, code, C)
+    flight.ahead, flight.recovery = h, recovery
+    goal(flight, C)
+    return bool(flight.on_target), float(rotation_error(flight.goal.copy(), C, np.empty(3)))
 
 
 def test_goal_is_the_target_unless_the_last_sample_was_limited() -> None:
@@ -98,12 +70,13 @@ def test_a_small_error_is_closed_at_once() -> None:
     assert left == 0.0
 
 
-def work_for(d: Array, half: float, shift: Array) -> Array:
-    work = np.zeros((ROWS, 4))
-    work[LO], work[HI] = d + shift - half, d + shift + half
-    work[GUESS] = d
-    tolerances(limit_table(RIG), 1e-3, 1e-3, work[TOLERANCE])
-    return work
+def flight_for(d: Array, half: float, shift: Array, C: Array) -> Flight:
+    """A flight at d, of unit weights, for C, with a box of that half width around d + shift."""
+    flight = new_flight(RIG, d, EXACT, C)
+    flight.lo[:], flight.hi[:] = d + shift - half, d + shift + half
+    flight.guess[:], flight.goal[:] = d, C
+    tolerances(flight.limits.copy(), 1e-3, 1e-3, flight.tolerance)
+    return flight
 
 
 @given(POSE_ANGLES, st.integers(0, 2**32 - 1))
@@ -113,56 +86,62 @@ def test_settle_finds_a_pose_inside_a_box_that_holds_one(d: Array, seed: int) ->
         return
     random = np.random.default_rng(seed)
     C = payload_attitudes(RIG, d[None])[0]
-    there = work_for(d, np.inf, np.zeros(4))
-    there[INCREMENT] = 1e-3 * random.normal(size=4)
-    assert settle(False, np.ones(4), d, C, there) > 0
-    work = work_for(there[POSE], 1e-6, np.zeros(4))
-    work[GUESS] = d
-    assert settle(False, np.ones(4), d, C, work) > 0
-    assert np.all(np.abs(work[POSE] - there[POSE]) <= 1e-6 + 1e-12)
-    assert np.abs(payload_attitudes(RIG, work[POSE][None])[0] - C).max() < 1e-14
+    there = flight_for(d, np.inf, np.zeros(4), C)
+    there.increment[:] = 1e-3 * random.normal(size=4)
+    assert settle(there) > 0
+    flight = flight_for(there.next.copy(), 1e-6, np.zeros(4), C)
+    flight.pose[:] = flight.guess[:] = d
+    assert settle(flight) > 0
+    assert np.all(np.abs(flight.next - there.next) <= 1e-6 + 1e-12)
+    assert np.abs(payload_attitudes(RIG, flight.next[None])[0] - C).max() < 1e-14
 
 
 def test_settle_says_when_the_box_holds_none() -> None:
     d = np.array([0.1, 0.4, 0.2, -0.3])
     C = payload_attitudes(RIG, d[None])[0]
-    work = work_for(d, 1e-6, np.array([1e-3, 1e-3, 1e-3, 1e-3]))
-    assert settle(False, np.ones(4), d, C, work) == 0
+    assert settle(flight_for(d, 1e-6, np.array([1e-3, 1e-3, 1e-3, 1e-3]), C)) == 0
 
 
 def test_give_way_goes_as_far_as_it_may_and_names_what_binds() -> None:
     d = np.array([0.0, 0.4, 0.2, 0.0])
     C = payload_attitudes(RIG, np.array([[0.0, 0.4, 0.2, 0.1]]))[0]
-    work = work_for(d, 1e-3, np.zeros(4))
-    codes = np.array([[limited_code(i, 1) for i in range(4)], [limited_code(i, 2) for i in range(4)]], np.int16)
-    J, e, F, A = np.empty((3, 4)), np.empty(3), np.empty((3, 3)), np.empty((4, 5))
-    code = give_way(RIG.axes, limit_table(RIG), d, C, J, e, F, work, A, codes[0], codes[1])
-    assert code == limited_code(3, 2)
-    assert work[GUESS, 3] == d[3] + 1e-3
-    assert np.all((work[GUESS] >= work[LO]) & (work[GUESS] <= work[HI]))
+    flight = flight_for(d, 1e-3, np.zeros(4), C)
+    flight.lo_code[:], flight.hi_code[:] = (
+        [limited_code(i, 1) for i in range(4)],
+        [limited_code(i, 2) for i in range(4)],
+    )
+    assert give_way(flight) == limited_code(3, 2)
+    guess = flight.guess.copy()
+    assert guess[3] == d[3] + 1e-3
+    assert np.all((guess >= flight.lo) & (guess <= flight.hi))
     # The least squares of the attitude error, the pose's own Jacobian for a witness: no frame could still lessen it.
-    payload_attitude(RIG.axes, work[GUESS], F)
+    F, e, J = np.empty((3, 3)), np.empty(3), np.empty((3, 4))
+    payload_attitude(RIG.axes, guess, F)
     rotation_error(C, F, e)
-    jacobian(RIG.axes, work[GUESS], J)
+    jacobian(RIG.axes, guess, J)
     downhill = J.T @ e
     for i in range(4):
-        at_bound = work[GUESS, i] in (work[LO, i], work[HI, i])
+        at_bound = guess[i] in (flight.lo[i], flight.hi[i])
         assert at_bound or abs(downhill[i]) < 1e-6
 
 
 def test_outermost_code() -> None:
-    lo, hi = -np.ones(4), np.ones(4)
-    codes = np.arange(1, 5, dtype=np.int16), np.arange(11, 15, dtype=np.int16)
-    assert outermost_code(np.array([0.0, 1.5, -1.2, 0.0]), lo, hi, *codes) == 12
-    assert outermost_code(np.array([0.0, 1.1, -1.2, 0.0]), lo, hi, *codes) == 3
+    flight = new_flight(RIG, np.zeros(4), EXACT, np.eye(3))
+    flight.lo[:], flight.hi[:] = -1.0, 1.0
+    flight.lo_code[:], flight.hi_code[:] = range(1, 5), range(11, 15)
+    assert outermost_code(flight, np.array([0.0, 1.5, -1.2, 0.0])) == 12
+    assert outermost_code(flight, np.array([0.0, 1.1, -1.2, 0.0])) == 3
 
 
 def test_advance_keeps_rate_interval_and_target() -> None:
-    state, target = new_state(np.zeros(4), EXACT), np.eye(3)
+    flight = new_flight(RIG, np.zeros(4), EXACT, np.eye(3))
     C = Rotation.random(random_state=2).as_matrix()
-    advance(state, target, 1.0, np.zeros(4), EXACT, C)
-    advance(state, target, 1.5, np.full(4, 0.25), LIMITED, C)
-    np.testing.assert_array_equal(state[:4], 0.25)
-    np.testing.assert_array_equal(state[4:8], 0.5)
-    assert state[CODE] == LIMITED
-    np.testing.assert_array_equal(target, C)
+    flight.next[:] = 0.0
+    advance(flight, 1.0, EXACT, C)
+    flight.next[:] = 0.25
+    advance(flight, 1.5, LIMITED, C)
+    np.testing.assert_array_equal(flight.pose, 0.25)
+    np.testing.assert_array_equal(flight.rate, 0.5)
+    assert flight.past == 0.5
+    assert flight.code == LIMITED
+    np.testing.assert_array_equal(flight.target, C)

@@ -184,7 +184,7 @@ def test_a_way_from_elsewhere_costs_no_limit() -> None:
     way = stepper.replan().run()
     random = np.random.default_rng(0)
     wild = replace(way, pose=way.pose + random.normal(size=way.pose.shape), rate=way.rate * 50.0)
-    angles = [stepper._state[:4].copy()]
+    angles = [stepper._flight.pose.copy()]
     assert stepper.adopt(wild)
     block = stepper.block(time[30:150], attitude[30:150])
     check(LIMITED, time[29:150], attitude[29:150], np.vstack([angles, block.angles]), np.r_[0, block.limited])
