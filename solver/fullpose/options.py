@@ -3,9 +3,13 @@
 import math
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
+from numbers import Integral, Real
 from typing import Any
 
 from fullpose.errors import MethodError
+
+# What counts as a number of a field's kind; NumPy's scalars do.
+_NUMBERS: dict[type, type] = {int: Integral, float: Real}
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,7 @@ def ranged(default: Any, least: float, most: float = math.inf, *, open: bool = F
 
 @dataclass(frozen=True)
 class Options:
-    """Base of every method's options. Raises `MethodError` where a value is outside its field's range.
+    """Base of every method's options. Raises `MethodError` where a value is of another type or outside its range.
 
     Each subclass is a frozen dataclass whose fields all have defaults, made by `ranged` where they are numbers; a field
     with a `StrEnum` as its default takes that vocabulary's words.
@@ -42,6 +46,11 @@ class Options:
     def __post_init__(self) -> None:
         for each in fields(self):
             value = getattr(self, each.name)
+            kind = type(each.default)
+            if kind in _NUMBERS and (isinstance(value, bool) or not isinstance(value, _NUMBERS[kind])):
+                raise MethodError(f"option {each.name} = {value!r}: expected {kind.__name__}")
+            if kind is bool and not isinstance(value, bool):
+                raise MethodError(f"option {each.name} = {value!r}: expected bool")
             if isinstance(each.default, StrEnum):
                 vocabulary = type(each.default)
                 if value not in list(vocabulary):

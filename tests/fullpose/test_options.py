@@ -3,6 +3,7 @@
 import math
 from dataclasses import fields
 
+import numpy as np
 import pytest
 
 from fullpose.errors import MethodError
@@ -52,3 +53,30 @@ def test_a_word_of_a_closed_vocabulary() -> None:
         MethodError, match=r"mode = 'sideways': expected one of closed_loop, open_loop, exact, exact_inner"
     ):
         method_options("alm", {"mode": "sideways"})
+
+
+@pytest.mark.parametrize(
+    ("method", "option", "value", "kind"),
+    [
+        ("plan", "iterations", 1.5, "int"),
+        ("plan", "iterations", True, "int"),
+        ("plan", "grid", "fine", "float"),
+        ("plan", "best_effort", "no", "bool"),
+        ("plan", "best_effort", 1, "bool"),
+        ("preview", "beam", 1.5, "int"),
+        ("exact", "avoidance", None, "float"),
+        ("exact", "avoidance", [2.0], "float"),
+    ],
+)
+def test_a_value_of_another_type_is_refused_wherever_it_comes_from(
+    method: str, option: str, value: object, kind: str
+) -> None:
+    """Made by hand, `iterations=1.5` passed and "fine" was a TypeError."""
+    for made in (lambda: REGISTRY[method].options(**{option: value}), lambda: method_options(method, {option: value})):
+        with pytest.raises(MethodError, match=f"option {option} = .*expected {kind}"):
+            made()
+
+
+def test_numbers_of_numpy_and_whole_numbers_are_numbers() -> None:
+    made = method_options("plan", {"grid": np.float64(0.01), "stage": 1, "iterations": np.int64(3)})
+    assert (made.grid, made.stage, made.iterations) == (0.01, 1, 3)

@@ -135,6 +135,8 @@ class Runner:
 
     async def _made(self, running: _Running, message: Mapping[str, Any]) -> Outcome:
         """What the worker makes of it, or how it ended."""
+        if running.cancelled:  # no worker need be started for it
+            return failed("cancelled", "before it began")
         if not self._worker.ready:
             try:
                 await self._worker.start()
@@ -142,8 +144,6 @@ class Runner:
                 return failed(
                     "worker", f"the process that makes it did not start: {refusal}; the server's log says why"
                 )
-        if running.cancelled:
-            return failed("cancelled", "before it began")
         async for answer in self._worker.ask(json.dumps(message)):
             match answer:
                 case {"progress": [str(phase), int(done), int(total)]}:

@@ -20,10 +20,11 @@ from fullpose.plan.fallback import EXACT_ERROR, Fallback
 from fullpose.rig import Rig
 from fullpose.solution import EXACT
 from fullpose.trajectory.bspline import WIDTH, Basis, spline_basis
-from fullpose.trajectory.linearisation import ROW, displaced, error_bands, limit_rows, over_limits
+from fullpose.trajectory.constraints import Limits, rig_limits, rows_within_reach
+from fullpose.trajectory.linearisation import ROW, displaced, error_bands, over_limits
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.qp import Equality, QuadraticProgramme, solve_programme
-from fullpose.trajectory.sqp import MET, NEAR, STRIDE, Limits, cost_weights, rig_limits, worst
+from fullpose.trajectory.sqp import MET, STRIDE, cost_weights, worst
 from fullpose.verify import attitude_errors, payload_attitudes
 
 PADDING = 0.25  # [s] of the exact path given up on each side of a place outside the limits, at first
@@ -283,33 +284,21 @@ def _programme(
         rig.axes, time, attitude, x, basis.first, basis.values, stride, ERROR_WEIGHT,
         *cost_weights(rig, options), bands, gradient,
     )  # fmt: skip
-    ones = np.ones_like(x)
-    room = 1024
-    while True:
-        origin, rows, bound = np.empty(room, np.int64), np.empty((room, ROW)), np.empty(room)
-        tag = np.empty(room, np.int64)
-        count = limit_rows(
-            time, x, ones, basis.first, basis.values, stride, flags, trust, limits.low, limits.high,
-            limits.rate, limits.acceleration, NEAR, origin, rows, bound, tag,
-        )  # fmt: skip
-        if count <= room:
-            break
-        room = count
+    origin, rows, bound, tag = rows_within_reach(time, x, np.ones_like(x), limits, basis, stride, flags, trust)
     equalities = []
     if start is not None:
         for i in rig.geometry.frames:
             row = np.zeros(ROW)
             row[:WIDTH] = basis.values[0]
             equalities.append(Equality(int(basis.first[0]), row, float(start[i] - x[0, i]), i))
-    tag = tag[:count]
     return QuadraticProgramme(
         bands,
         gradient,
-        origin[:count],
-        rows[:count],
-        bound[:count],
+        origin,
+        rows,
+        bound,
         tag % 12 // 3,
-        origin[:count],
+        origin,
         trust,
         pinned,
         tuple(equalities),

@@ -12,6 +12,7 @@ import numpy as np
 from fullpose._typing import Array, Flags
 from fullpose.rig import Rig
 from fullpose.trajectory.bspline import Basis, spline_basis
+from fullpose.trajectory.constraints import Limits, rig_limits, rows_within_reach
 from fullpose.trajectory.curve import LOCKED, closest_all, null_vectors
 from fullpose.trajectory.linearisation import (
     ROW,
@@ -19,7 +20,6 @@ from fullpose.trajectory.linearisation import (
     difference,
     displaced,
     fill_row,
-    limit_rows,
     over_limits,
 )
 from fullpose.trajectory.options import PlanOptions
@@ -30,31 +30,10 @@ CHUNK = 1 << 17  # samples looked at together
 RATE_MET = 1e-4  # of the lowest rate limit: a start rate missed by less counts as taken up
 MET = 1e-7  # of a limit: over it by less counts as inside
 OVERRUN = 1e3  # merit of a limit exceeded by its whole; costs are about one a second at most
-NEAR = 0.6  # share of a limit from which its rows are in the programme at once
 ROOM = 0.8  # of v^2 / a: the way that a lead needs between rest and rate v
 SHORTEST = 3.0  # samples: a lead has four at least, of half the rate on average, and the rate it starts from may rise
 LEAD_UNIT = 0.005  # [rad] short of that room counts as much as the whole of a rate limit
 STRIDE = 3.0  # rows a knot
-
-
-@dataclass(frozen=True)
-class Limits:
-    """The limits a refinement keeps to, arrays (4,): a rig's, less the reserve."""
-
-    low: Array
-    high: Array
-    rate: Array
-    acceleration: Array
-
-
-def rig_limits(rig: Rig, reserve: float = 0.0) -> Limits:
-    """The rig's limits with `reserve` (a share of them) unused; positions keep 1e-5 rad clear of their ends at most."""
-    span = rig.position_max - rig.position_min
-    clear = np.minimum(1e-5, 0.1 * span) if reserve > 0.0 else 0.0
-    return Limits(
-        rig.position_min + clear, rig.position_max - clear,
-        rig.max_rate * (1.0 - reserve), rig.max_acceleration * (1.0 - reserve),
-    )  # fmt: skip
 
 
 def locked(rig: Rig) -> bool:
@@ -183,17 +162,7 @@ def _programme(
         _home_cost(rig, options),
         options.singularity_margin, options.singularity_cost, bands, gradient,
     )  # fmt: skip
-    room = 256
-    while True:
-        origin, rows, bound = np.empty(room, np.int64), np.empty((room, ROW)), np.empty(room)
-        tag = np.empty(room, np.int64)
-        count = limit_rows(
-            time, d, n, basis.first, basis.values, stride, flags, trust, limits.low, limits.high,
-            limits.rate, limits.acceleration, NEAR, origin, rows, bound, tag,
-        )  # fmt: skip
-        if count <= room:
-            break
-        room = count
+    origin, rows, bound, _ = rows_within_reach(time, d, n, limits, basis, stride, flags, trust)
     equalities = []
     if start:
         row = np.zeros(ROW)
@@ -210,20 +179,19 @@ def _programme(
             value += n[0, i] * (start_rate[i] - difference(1, 1, i, time, d))
         equalities.append(Equality(at, row, value))
     cuts = lead_cuts(time, d, n, basis, limits, ends)
-    group = origin[:count]
+    group = origin
     if cuts:
-        origin = np.r_[origin[:count], [cut.origin for cut in cuts]]
-        rows = np.vstack([rows[:count], [cut.row for cut in cuts]])
-        bound = np.r_[bound[:count], [cut.value for cut in cuts]]
+        origin = np.r_[origin, [cut.origin for cut in cuts]]
+        rows = np.vstack([rows, [cut.row for cut in cuts]])
+        bound = np.r_[bound, [cut.value for cut in cuts]]
         group = np.r_[group, np.full(len(cuts), basis.size)]
-        count += len(cuts)
     problem = QuadraticProgramme(
         bands,
         gradient,
-        origin[:count],
-        rows[:count],
-        bound[:count],
-        np.zeros(count, np.int64),
+        origin,
+        rows,
+        bound,
+        np.zeros(len(origin), np.int64),
         group,
         trust,
         pinned,

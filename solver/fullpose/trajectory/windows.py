@@ -7,10 +7,11 @@ import numpy as np
 from fullpose._jit import kernel
 from fullpose._typing import Array, Counts, Integers, Progress
 from fullpose.rig import Rig
+from fullpose.trajectory.constraints import rig_limits
 from fullpose.trajectory.curve import closest_all, hold_locked, smoothed, spline_rows, spline_slopes
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.shortest_path import NodePath
-from fullpose.trajectory.sqp import MET, OVERRUN, Refined, refine, rig_limits, worst
+from fullpose.trajectory.sqp import MET, OVERRUN, Refined, refine, worst
 
 STIFFNESS = (5.0, 0.3, 0.0)  # of the smoothing of a node path, tried in turn until the path does not jump
 JUMP = 4.0  # times the rate limit between two samples: no curve any more

@@ -8,6 +8,7 @@ from fullpose.attitude import dcm_from_quaternion
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.trajectory.bspline import spline_basis
+from fullpose.trajectory.constraints import rig_limits
 from fullpose.trajectory.curve import null_vectors
 from fullpose.trajectory.linearisation import (
     ROW,
@@ -23,7 +24,7 @@ from fullpose.trajectory.nodes import lattice
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.qp import QuadraticProgramme, matrices, solve_programme
 from fullpose.trajectory.shortest_path import Programme
-from fullpose.trajectory.sqp import lead_cuts, refine, rig_limits, worst
+from fullpose.trajectory.sqp import lead_cuts, refine, worst
 from fullpose.trajectory.windows import refine_path, smooth_curve, stage_samples
 from fullpose.verify import payload_attitudes, verify
 
