@@ -10,8 +10,9 @@ from starlette.requests import HTTPConnection
 
 from fullpose_server.api import errors, openapi
 from fullpose_server.api.console import console
-from fullpose_server.api.errors import ApiError, problem_response
+from fullpose_server.api.errors import problem_response
 from fullpose_server.api.origin import OriginGuard
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.routes import (
     audit,
     compare,

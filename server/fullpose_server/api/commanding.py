@@ -5,7 +5,7 @@ from collections.abc import Coroutine
 from typing import Any
 
 from fullpose_server.api.deps import Services
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.session import CommandOut, LeaseToken
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.session.errors import IllegalCommandError

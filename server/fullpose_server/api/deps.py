@@ -10,7 +10,7 @@ from fastapi import Depends, Header
 from numpy.typing import ArrayLike
 from starlette.requests import HTTPConnection
 
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import CLIENT_NAME
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.formats.rig_file import RigStore

@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Sequence
-from http import HTTPStatus
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -12,43 +11,11 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from fullpose.errors import InputError, MethodError
+from fullpose_server.api.problems import MEDIA_TYPE, ApiError
 from fullpose_server.api.schemas.base import FieldProblem, Problem
 from fullpose_server.errors import FileError, NotFoundError
 
-MEDIA_TYPE = "application/problem+json"
 log = logging.getLogger(__name__)
-
-
-class ApiError(Exception):
-    """Root of the errors that the API raises on purpose; it carries its problem document."""
-
-    def __init__(
-        self,
-        status: int,
-        code: str,
-        detail: str,
-        *,
-        errors: Sequence[FieldProblem] = (),
-        state: str | None = None,
-        command: str | None = None,
-        allowed: Sequence[str] | None = None,
-    ) -> None:
-        super().__init__(detail)
-        self.problem = Problem(
-            type=f"urn:fullpose:problem:{code}",
-            title=HTTPStatus(status).phrase,
-            status=status,
-            detail=detail,
-            errors=list(errors),
-            state=state,
-            command=command,
-            allowed=None if allowed is None else list(allowed),
-        )
-
-
-def not_found(kind: str, name: str) -> ApiError:
-    """404 for a thing that is named and not there."""
-    return ApiError(404, "not-found", f"no {kind} named {name!r}")
 
 
 def problem_of(error: Exception) -> Problem:

@@ -8,7 +8,7 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic.json_schema import models_json_schema
 
-from fullpose_server.api.errors import MEDIA_TYPE
+from fullpose_server.api.problems import MEDIA_TYPE
 from fullpose_server.api.schemas.base import Problem, Wire
 from fullpose_server.api.schemas.live import LiveOpened, LiveProblem, LiveReplyOut, LiveSampleIn, OpenLive
 from fullpose_server.api.schemas.solve import Opened, OpenSolve, Solved, SolveIn, SolveProblem, SolveSamples

@@ -11,7 +11,8 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from fullpose_server.api.errors import ApiError, problem_response
+from fullpose_server.api.errors import problem_response
+from fullpose_server.api.problems import ApiError
 from fullpose_server.settings import Settings, is_loopback
 
 SAFE = frozenset({"GET", "HEAD", "OPTIONS"})

@@ -10,7 +10,7 @@ from python_multipart.exceptions import MultipartParseError
 from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.requests import ClientDisconnect, Request
 
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 
 if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks

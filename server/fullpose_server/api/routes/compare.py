@@ -11,7 +11,7 @@ from starlette.responses import FileResponse
 from fullpose.compare import variants
 from fullpose.registry import Variant, parse_variant, variant
 from fullpose_server.api.deps import Services, ServicesDep
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.progress import progress_out
 from fullpose_server.api.schemas.compare import CompareIn, ComparisonOut, MethodIn
 from fullpose_server.formats.start_pose import start_pose

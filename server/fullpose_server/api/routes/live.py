@@ -14,7 +14,8 @@ from pydantic import TypeAdapter
 
 from fullpose_server.api.commanding import answer, audit
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
-from fullpose_server.api.errors import ApiError, problem_of
+from fullpose_server.api.errors import problem_of
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.live import (
     LiveIn,

@@ -12,7 +12,7 @@ from fullpose.registry import DEFAULT, REGISTRY, method_options, option_defaults
 from fullpose.resample import check_length
 from fullpose.rig import FRAMES
 from fullpose_server.api.deps import Services, ServicesDep
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.progress import progress_out
 from fullpose_server.api.schemas.plans import (
     JobErrorOut,

@@ -13,7 +13,7 @@ from typing import Any
 from fastapi import APIRouter, WebSocket
 
 from fullpose_server.api.deps import Services, ServicesDep
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.session import SessionOut
 from fullpose_server.api.schemas.stream import Hello, Playback, Replayed, ReplayOf, SessionChanged, StopNow

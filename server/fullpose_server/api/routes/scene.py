@@ -7,7 +7,7 @@ import numpy as np
 from fastapi import APIRouter
 
 from fullpose_server.api.deps import Services, ServicesDep
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.scene import ScenePoseIn, ScenePoseOut
 from fullpose_server.formats.plan_folder import read_plan
 

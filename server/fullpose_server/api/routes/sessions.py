@@ -8,7 +8,7 @@ from fastapi import APIRouter, Body
 
 from fullpose_server.api.commanding import answer, audit, by_priority, refusal, without_process
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.session import (
     AlarmOut,
     CommandIn,

@@ -19,7 +19,8 @@ from fullpose.solve import solve
 from fullpose.verify import attitude_errors, payload_attitudes, verify
 from fullpose_server.api.attitudes import attitudes, limited_list
 from fullpose_server.api.deps import Services, ServicesDep
-from fullpose_server.api.errors import ApiError, problem_of
+from fullpose_server.api.errors import problem_of
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.plans import ReportOut
 from fullpose_server.api.schemas.solve import (
     Opened,

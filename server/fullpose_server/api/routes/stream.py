@@ -9,7 +9,7 @@ from fastapi import APIRouter, WebSocket
 
 from fullpose_server.api.commanding import by_priority
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
-from fullpose_server.api.errors import ApiError
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.session import SessionOut
 from fullpose_server.api.schemas.stream import Hello, Playback, SessionChanged, StopNow, Stopped

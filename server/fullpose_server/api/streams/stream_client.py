@@ -12,7 +12,8 @@ from typing import Protocol
 from fastapi import WebSocket
 from pydantic import TypeAdapter, ValidationError
 
-from fullpose_server.api.errors import ApiError, problem_of
+from fullpose_server.api.errors import problem_of
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.stream import (
     Hello,
