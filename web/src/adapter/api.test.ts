@@ -11,7 +11,7 @@ beforeEach(() => {
     limits.push(ms);
     return AbortSignal.abort(new DOMException("late", "TimeoutError"));
   });
-  vi.stubGlobal("fetch", (_: string, { signal }: RequestInit) => Promise.reject(signal?.reason));
+  vi.stubGlobal("fetch", (_: string, { signal }: RequestInit) => Promise.reject(signal?.reason as DOMException));
 });
 
 afterEach(() => {

@@ -25,7 +25,7 @@ const BASE = "/api/v1";
 export function me(): string {
   let name = sessionStorage.getItem("fullpose.me");
   if (name === null) {
-    name = `console-${crypto.getRandomValues(new Uint32Array(1))[0]!.toString(36).slice(0, 4)}`;
+    name = `console-${(crypto.getRandomValues(new Uint32Array(1))[0] ?? 0).toString(36).slice(0, 4)}`;
     sessionStorage.setItem("fullpose.me", name);
   }
   return name;
@@ -46,7 +46,7 @@ export class ApiError extends Error {
 /** What a person reads of an error: the detail, and where in the file or the request it is. */
 export function messageOf(error: unknown): string {
   if (!(error instanceof ApiError)) return error instanceof Error ? error.message : String(error);
-  const first = error.problem?.errors?.[0];
+  const first = error.problem?.errors[0];
   if (!first || error.message.includes(first.message)) return error.message;
   const line = first.line ? `line ${first.line}, ` : "";
   return `${error.message} (${line}${first.where}: ${first.message})`;
@@ -74,16 +74,16 @@ interface Sending {
   keepalive?: boolean;
 }
 
-async function request<T>(method: string, path: string, { body, withinMs = READ_MS, keepalive = false }: Sending = {}): Promise<T> {
-  const init: RequestInit = {
-    method,
-    keepalive,
-    headers: { "x-fullpose-client": me() },
-    signal: AbortSignal.timeout(withinMs),
-  };
+async function request<T>(
+  method: string,
+  path: string,
+  { body, withinMs = READ_MS, keepalive = false }: Sending = {},
+): Promise<T> {
+  const headers: Record<string, string> = { "x-fullpose-client": me() };
+  const init: RequestInit = { method, keepalive, headers, signal: AbortSignal.timeout(withinMs) };
   if (body !== undefined) {
     init.body = JSON.stringify(body);
-    init.headers = { ...init.headers, "content-type": "application/json" };
+    headers["content-type"] = "application/json";
   }
   let response: Response;
   let text: string;
@@ -115,7 +115,7 @@ export const api = {
   trajectories: () => request<Trajectory[]>("GET", "/trajectories"),
   preview: (sha: string, points = 800) =>
     request<TrajectoryPreview>("GET", `/trajectories/${at(sha)}/preview?points=${points}`),
-  deleteTrajectory: (sha: string) => request<void>("DELETE", `/trajectories/${at(sha)}`),
+  deleteTrajectory: (sha: string) => request<undefined>("DELETE", `/trajectories/${at(sha)}`),
 
   plans: () => request<Plan[]>("GET", "/plans"),
   plan: (id: string) => request<Plan>("GET", `/plans/${at(id)}`),
@@ -124,15 +124,16 @@ export const api = {
     request<Plan>("POST", "/plans", {
       body: { trajectory, rig, method } satisfies Pick<PlanIn, "trajectory" | "rig" | "method">,
     }),
-  createRemedy: (plan: string, kind: RemedyKind) => request<Plan>("POST", `/plans/${at(plan)}/remedies`, { body: { kind } }),
-  cancelPlan: (id: string) => request<void>("DELETE", `/plans/${at(id)}`),
+  createRemedy: (plan: string, kind: RemedyKind) =>
+    request<Plan>("POST", `/plans/${at(plan)}/remedies`, { body: { kind } }),
+  cancelPlan: (id: string) => request<undefined>("DELETE", `/plans/${at(id)}`),
 
   comparisons: () => request<Comparison[]>("GET", "/compare"),
   comparison: (id: string) => request<Comparison>("GET", `/compare/${at(id)}`),
   createComparison: (trajectory: string, rig: string, methods: string[]) =>
     request<Comparison>("POST", "/compare", { body: { trajectory, rig, methods } }),
   /** Cancels one that is under way, removes one that is not. */
-  removeComparison: (id: string) => request<void>("DELETE", `/compare/${at(id)}`),
+  removeComparison: (id: string) => request<undefined>("DELETE", `/compare/${at(id)}`),
 
   command: (rig: string, command: string, args: object, lease: LeaseToken | null) =>
     request<CommandOut>("POST", `/rigs/${at(rig)}/commands`, { body: { command, args, lease }, withinMs: COMMAND_MS }),

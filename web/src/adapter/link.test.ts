@@ -20,7 +20,9 @@ describe("the link", () => {
   });
 
   it("takes a lower revision too: a new rig process counts anew", () => {
-    expect(after({ type: "opened", session: session(9) }, { type: "session", session: session(1) }).session?.revision).toBe(1);
+    expect(
+      after({ type: "opened", session: session(9) }, { type: "session", session: session(1) }).session?.revision,
+    ).toBe(1);
   });
 
   it("adds up the drops of several connections", () => {

@@ -86,7 +86,7 @@ function telemetry(seq: number, wallNs: bigint, serverTime: number): ArrayBuffer
   view.setBigUint64(8, BigInt(seq), true);
   view.setFloat64(16, serverTime, true);
   view.setBigInt64(HEADER_BYTES, wallNs, true);
-  return view.buffer as ArrayBuffer;
+  return view.buffer;
 }
 
 describe("the stream", () => {
@@ -99,7 +99,10 @@ describe("the stream", () => {
     world = new World();
     events = [];
     batches = [];
-    const listener = { link: (event: LinkEvent) => void events.push(event), batch: (batch: Batch) => void batches.push(batch) };
+    const listener = {
+      link: (event: LinkEvent) => void events.push(event),
+      batch: (batch: Batch) => void batches.push(batch),
+    };
     stream = new Stream("ws://rig", listener, world.around);
   });
 
@@ -218,7 +221,9 @@ describe("a replay", () => {
 });
 
 it("backoff doubles from 250 ms to 5 s, spread by a quarter either way", () => {
-  expect([1, 2, 3, 4, 5, 6, 20].map((attempt) => backoffMs(attempt, 0.5))).toEqual([250, 500, 1000, 2000, 4000, 5000, 5000]);
+  expect([1, 2, 3, 4, 5, 6, 20].map((attempt) => backoffMs(attempt, 0.5))).toEqual([
+    250, 500, 1000, 2000, 4000, 5000, 5000,
+  ]);
   expect(backoffMs(1, 0)).toBe(187.5);
   expect(backoffMs(1, 1)).toBe(312.5);
 });

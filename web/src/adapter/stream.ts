@@ -1,5 +1,12 @@
 /** The stream client of one rig: owns the socket, the reconnects and the pings; decides nothing. */
-import { STREAM_SCHEMA, type PlaybackControl, type Replayed, type ReplayOf, type ServerMessage, type Subscribe } from "../contract/types";
+import {
+  STREAM_SCHEMA,
+  type PlaybackControl,
+  type Replayed,
+  type ReplayOf,
+  type ServerMessage,
+  type Subscribe,
+} from "../contract/types";
 import type { LinkEvent } from "./link";
 import { decodeBinary, decodeJson, FrameError, layoutOf, type Batch, type Layout } from "./telemetry";
 
@@ -108,8 +115,9 @@ export class Stream {
   #message(message: ServerMessage): void {
     switch (message.type) {
       case "hello": {
-        if (message.schema !== STREAM_SCHEMA) {
-          throw new FrameError(`the server speaks ${message.schema}, this console ${STREAM_SCHEMA}: reload the page`);
+        const spoken: string = message.schema; // the contract says which; a server of another version does not keep to it
+        if (spoken !== STREAM_SCHEMA) {
+          throw new FrameError(`the server speaks ${spoken}, this console ${STREAM_SCHEMA}: reload the page`);
         }
         this.#layout = layoutOf(message.record);
         this.#attempt = 0;
@@ -169,7 +177,8 @@ export class Stream {
 
   #watch(): void {
     this.#later(() => {
-      if (this.around.now() - this.#heardAt > (this.#layout ? SILENCE_MS : this.helloMs)) this.#lost("no word from the server");
+      if (this.around.now() - this.#heardAt > (this.#layout ? SILENCE_MS : this.helloMs))
+        this.#lost("no word from the server");
       else this.#watch();
     }, PING_PERIOD_MS);
   }

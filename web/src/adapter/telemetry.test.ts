@@ -13,10 +13,13 @@ const RECORD: RecordDescription = {
   ],
 };
 
-function frame(rows: { seq: number; timeNs: number; state: number; measured: number[] }[], magic = "FPT1"): ArrayBuffer {
+function frame(
+  rows: { seq: number; timeNs: number; state: number; measured: number[] }[],
+  magic = "FPT1",
+): ArrayBuffer {
   const buffer = new ArrayBuffer(HEADER_BYTES + rows.length * RECORD.size);
   const view = new DataView(buffer);
-  [...magic].forEach((letter, i) => view.setUint8(i, letter.charCodeAt(0)));
+  for (let i = 0; i < magic.length; i++) view.setUint8(i, magic.charCodeAt(i));
   view.setUint16(4, 1, true);
   view.setUint16(6, rows.length, true);
   view.setBigUint64(8, BigInt(rows.at(-1)?.seq ?? 0), true);

@@ -21,7 +21,8 @@ const NOTHING: Circumstances = {
   busy: true,
 };
 
-const enabled = (command: string, now: Partial<Circumstances>): boolean => verdict(command, { ...ARMED, ...now }).enabled;
+const enabled = (command: string, now: Partial<Circumstances>): boolean =>
+  verdict(command, { ...ARMED, ...now }).enabled;
 
 describe("stop and E-stop", () => {
   it.each(["stop", "estop"])("%s may always be given", (command) => {
@@ -98,7 +99,7 @@ it("the main button follows the run, and the way back from a trip", () => {
 it("every button is a command of the contract", () => {
   const known = Object.values(contract.components.schemas).flatMap((schema) =>
     "properties" in schema && "command" in schema.properties && "const" in schema.properties.command
-      ? [schema.properties.command.const as string]
+      ? [schema.properties.command.const]
       : [],
   );
   expect(known).toContain("estop");

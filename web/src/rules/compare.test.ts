@@ -2,11 +2,28 @@ import { describe, expect, it } from "vitest";
 import type { MethodFigures } from "../contract/types";
 import { best, COLUMNS, exactText, fit, ranked, standingOf, summaryOf, type Column } from "./compare";
 
-const peaks = (rate: number): object => ({ base: null, outer: { position_deg: 1, rate_deg_s: rate, acceleration_deg_s2: 9 } });
+const peaks = (rate: number): object => ({
+  base: null,
+  outer: { position_deg: 1, rate_deg_s: rate, acceleration_deg_s2: 9 },
+});
 
 function method(name: string, fields: object = {}): MethodFigures {
-  const figures = { refusal: null, feasible: true, exact_share: 1, max_error_deg: 1e-13, limit_violation_samples: 0, peak: peaks(10) };
-  return { label: name, method: name, source: "", claims_limits: true, ...figures, ...fields } as unknown as MethodFigures;
+  const figures = {
+    refusal: null,
+    feasible: true,
+    exact_share: 1,
+    max_error_deg: 1e-13,
+    limit_violation_samples: 0,
+    peak: peaks(10),
+  };
+  return {
+    label: name,
+    method: name,
+    source: "",
+    claims_limits: true,
+    ...figures,
+    ...fields,
+  } as unknown as MethodFigures;
 }
 
 function column(key: string): Column {
@@ -19,20 +36,34 @@ const bestOf = (key: string, methods: MethodFigures[]): string[] => [...best(col
 
 describe("what a method comes to", () => {
   it("names the limit that most samples are beyond", () => {
-    const counts = { base: { position: 0, rate: 169, acceleration: 461 }, inner: { position: 19671, rate: 0, acceleration: 0 } };
+    const counts = {
+      base: { position: 0, rate: 169, acceleration: 461 },
+      inner: { position: 19671, rate: 0, acceleration: 0 },
+    };
     const over = method("three_axis", { feasible: false, limit_violation_counts: counts });
-    expect(standingOf(over)).toEqual({ tone: "danger", word: "Not feasible", detail: "inner position, 19,671 samples" });
+    expect(standingOf(over)).toEqual({
+      tone: "danger",
+      word: "Not feasible",
+      detail: "inner position, 19,671 samples",
+    });
   });
 
   it("tells inside the limits from exact", () => {
     const failures = [{ reason: "linearised step", samples: 1, first_s: 0, max_error_deg: 1 }];
-    expect(standingOf(method("lagrange", { exact_share: 0.2, failures }))).toMatchObject({ tone: "caution", detail: "linearised step, 1 sample" });
+    expect(standingOf(method("lagrange", { exact_share: 0.2, failures }))).toMatchObject({
+      tone: "caution",
+      detail: "linearised step, 1 sample",
+    });
     expect(standingOf(method("exact")).tone).toBe("good");
-    expect(standingOf(method("x", { refusal: "needs four axes", feasible: null }))).toMatchObject({ tone: "", detail: "needs four axes" });
+    expect(standingOf(method("x", { refusal: "needs four axes", feasible: null }))).toMatchObject({
+      tone: "",
+      detail: "needs four axes",
+    });
   });
 
   it("never rounds up to all of it, nor down to none", () => {
-    const text = (exact_percent: number | null, exact_samples: number | null): string => exactText(method("a", { exact_percent, exact_samples }));
+    const text = (exact_percent: number | null, exact_samples: number | null): string =>
+      exactText(method("a", { exact_percent, exact_samples }));
     expect([text(100, 9), text(99.99, 8), text(0.3, 2), text(0, 1), text(0, 0), text(null, null)]).toEqual([
       "100 %",
       "99.99 %",
@@ -45,7 +76,8 @@ describe("what a method comes to", () => {
 
   it("counts no iterations of a method that stopped before its first sample", () => {
     const { text, more, value } = column("iterations");
-    const at = (median: number, max: number): unknown[] => [value, text, more!].map((of) => of(method("a", { iterations: { median, max } })));
+    const at = (median: number, max: number): unknown[] =>
+      [value, text, more].map((of) => of?.(method("a", { iterations: { median, max } })));
     expect(at(0, 0)).toEqual([null, "–", null]);
     expect(at(2, 30)).toEqual([2, "2", "most 30"]);
   });
@@ -64,7 +96,11 @@ describe("the best value", () => {
   });
 
   it("does not tell errors of rounding apart", () => {
-    const three = [method("a", { max_error_deg: 3e-14 }), method("b", { max_error_deg: 8e-13 }), method("c", { max_error_deg: 0.02 })];
+    const three = [
+      method("a", { max_error_deg: 3e-14 }),
+      method("b", { max_error_deg: 8e-13 }),
+      method("c", { max_error_deg: 0.02 }),
+    ];
     expect(bestOf("largest", three)).toEqual(["a", "b"]);
     const matrices = [1e-16, 4e-15, 0.1].map((max_matrix_error, i) => method(`m${i}`, { max_matrix_error }));
     expect(bestOf("matrix", matrices)).toEqual(["m0", "m1"]);
@@ -79,7 +115,9 @@ describe("the best value", () => {
   it("is no merit of a method that misses the flight", () => {
     const idle = method("idle", { exact_share: 0.1, peak: peaks(1) });
     const over = method("over", { feasible: false, peak: peaks(2) });
-    expect(bestOf("rate", [idle, over, method("a", { peak: peaks(20) }), method("b", { peak: peaks(30) })])).toEqual(["a"]);
+    expect(bestOf("rate", [idle, over, method("a", { peak: peaks(20) }), method("b", { peak: peaks(30) })])).toEqual([
+      "a",
+    ]);
     expect(fit(idle)).toBe(false);
   });
 
@@ -103,5 +141,7 @@ it("sums up in one line", () => {
   const summary = (methods: MethodFigures[]): string => summaryOf({ report: { methods } } as never);
   expect(summary([method("a", { feasible: false })])).toMatch(/^No method/);
   expect(summary([method("a"), method("b")])).toMatch(/^All methods/);
-  expect(summary([method("a"), method("b"), method("c", { exact_share: 0 })])).toBe("a and b fly it exactly within the limits.");
+  expect(summary([method("a"), method("b"), method("c", { exact_share: 0 })])).toBe(
+    "a and b fly it exactly within the limits.",
+  );
 });

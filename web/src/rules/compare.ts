@@ -34,7 +34,8 @@ export function fit(method: MethodFigures): boolean {
 
 export function standingOf(method: MethodFigures): Standing {
   if (method.refusal !== null) return { tone: "", word: "Does not apply", detail: method.refusal };
-  if (method.feasible === false) return { tone: "danger", word: "Not feasible", detail: beyond(method) ?? missed(method) ?? "" };
+  if (method.feasible === false)
+    return { tone: "danger", word: "Not feasible", detail: beyond(method) ?? missed(method) ?? "" };
   if (method.exact_share !== 1) return { tone: "caution", word: "Not exact", detail: missed(method) ?? "" };
   return { tone: "good", word: "Exact, inside limits", detail: "" };
 }

@@ -17,8 +17,11 @@ describe.each(["dark", "light"])("in the %s theme", (theme) => {
   const block = tokens.split(`[data-theme="${theme}"] {`)[1]?.split("}")[0] ?? "";
   const of = (name: string): string => new RegExp(`--${name}: (#[0-9a-f]{6});`).exec(block)?.[1] ?? "";
 
-  it.each(["accent-fill", "accent-fill-hover", "danger-fill", "danger-fill-hover"])("text on --%s can be read", (fill) => {
-    const ratio = (luminance(of("on-fill")) + 0.05) / (luminance(of(fill)) + 0.05);
-    expect(ratio).toBeGreaterThanOrEqual(4.5);
-  });
+  it.each(["accent-fill", "accent-fill-hover", "danger-fill", "danger-fill-hover"])(
+    "text on --%s can be read",
+    (fill) => {
+      const ratio = (luminance(of("on-fill")) + 0.05) / (luminance(of(fill)) + 0.05);
+      expect(ratio).toBeGreaterThanOrEqual(4.5);
+    },
+  );
 });

@@ -9,7 +9,11 @@ export function takesFlights(page: Page): boolean {
 }
 
 /** Why files that were given are not taken, or null. `sending`: name of the one under way. */
-export function refusalOf(files: readonly { name: string; size: number }[], sending: string | null, mostBytes: number): string | null {
+export function refusalOf(
+  files: readonly { name: string; size: number }[],
+  sending: string | null,
+  mostBytes: number,
+): string | null {
   const [file, ...more] = files;
   if (!file) return "Nothing was taken: no file was dropped";
   if (sending !== null) return `${file.name} was not taken: ${sending} is still being sent`;

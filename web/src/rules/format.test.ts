@@ -4,7 +4,12 @@ import { bytes, clock, duration, fixed, integer, MISSING, scientific, small } fr
 it("fixed: a real minus, no negative zero, a dash for what is missing", () => {
   expect(fixed(-12.3456, 3)).toBe("−12.346");
   expect(fixed(-0.0001, 2)).toBe("0.00");
-  expect([null, undefined, NaN, Infinity].map((value) => fixed(value, 2))).toEqual([MISSING, MISSING, MISSING, MISSING]);
+  expect([null, undefined, NaN, Infinity].map((value) => fixed(value, 2))).toEqual([
+    MISSING,
+    MISSING,
+    MISSING,
+    MISSING,
+  ]);
 });
 
 it("scientific: an exact zero is told from a missing value", () => {
@@ -20,7 +25,14 @@ it("small changes its notation at a thousandth", () => {
 });
 
 it("duration picks its unit", () => {
-  expect([0.25, 3.14, 42.4, 1500, 61_000, 150_000].map(duration)).toEqual(["250 µs", "3.1 ms", "42 ms", "1.50 s", "61.0 s", "3 min"]);
+  expect([0.25, 3.14, 42.4, 1500, 61_000, 150_000].map(duration)).toEqual([
+    "250 µs",
+    "3.1 ms",
+    "42 ms",
+    "1.50 s",
+    "61.0 s",
+    "3 min",
+  ]);
   expect(duration(null)).toBe(MISSING);
 });
 

@@ -30,7 +30,13 @@ describe("freshness", () => {
   const at = (age: number): string => freshness({ ...OPEN, ageAtSendMs: 0, roundTripMs: 0 }, 1000 + age);
 
   it("goes from fresh through late to stale", () => {
-    expect([0, LATE_MS, LATE_MS + 1, STALE_MS, STALE_MS + 1].map(at)).toEqual(["fresh", "fresh", "late", "late", "stale"]);
+    expect([0, LATE_MS, LATE_MS + 1, STALE_MS, STALE_MS + 1].map(at)).toEqual([
+      "fresh",
+      "fresh",
+      "late",
+      "late",
+      "stale",
+    ]);
   });
 
   it("is stale on a closed link, however young the last record", () => {

@@ -2,7 +2,13 @@ import { expect, it } from "vitest";
 import contract from "../../../docs/openapi.json";
 import { commandOfKey, type Key } from "./keys";
 
-const key = (name: string, more: Partial<Key> = {}): Key => ({ key: name, repeat: false, focus: "none", modified: false, ...more });
+const key = (name: string, more: Partial<Key> = {}): Key => ({
+  key: name,
+  repeat: false,
+  focus: "none",
+  modified: false,
+  ...more,
+});
 const STATES: (string | null)[] = [...contract.components.schemas.State.enum, null];
 const FOCUS = ["text", "control", "none"] as const;
 
@@ -14,7 +20,9 @@ it("no key sets a rig in motion", () => {
   const named = [" ", "Enter", "Home", "Escape", "r", "p", "ArrowRight"];
   const given = new Set(
     named.flatMap((name) =>
-      STATES.flatMap((state) => FOCUS.flatMap((focus) => [true, false].map((playback) => commandOfKey(key(name, { focus }), state, playback)))),
+      STATES.flatMap((state) =>
+        FOCUS.flatMap((focus) => [true, false].map((playback) => commandOfKey(key(name, { focus }), state, playback))),
+      ),
     ),
   );
   expect(given).toEqual(new Set(["hold", "stop", "play", null]));

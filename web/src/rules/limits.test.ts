@@ -1,7 +1,13 @@
 import { describe, expect, it } from "vitest";
 import { dataRange, extent, limitRange, nearness, positionLimits, rateLimits, used, type FrameLimits } from "./limits";
 
-const FRAME: FrameLimits = { min_deg: -60, max_deg: 60, max_rate_deg_s: 600, max_acceleration_deg_s2: null, home_deg: 0 };
+const FRAME: FrameLimits = {
+  min_deg: -60,
+  max_deg: 60,
+  max_rate_deg_s: 600,
+  max_acceleration_deg_s2: null,
+  home_deg: 0,
+};
 
 describe("axes", () => {
   it("extent passes over what is not a number", () => {

@@ -25,6 +25,7 @@ export function liveFigures(health: LiveHealth | null): string {
   }
   const unused = health.dropped + health.bad;
   if (unused > 0) said.push(`${integer(unused)} not used`);
-  if (health.way_age_ms !== null && health.way_age_ms > 500) said.push(`planner silent ${fixed(health.way_age_ms / 1000, 1)} s`);
+  if (health.way_age_ms !== null && health.way_age_ms > 500)
+    said.push(`planner silent ${fixed(health.way_age_ms / 1000, 1)} s`);
   return said.join(" · ");
 }

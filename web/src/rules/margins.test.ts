@@ -8,7 +8,11 @@ const FREE = { ...LIMITS, min_deg: null, max_deg: null };
 function plan(position: number | null, report: object = {}): Plan {
   const margin = (value: number | null): object | null => (value === null ? null : { value, time_s: 1.5 });
   const inner = { position_deg: margin(position), rate_deg_s: margin(40), acceleration_deg_s2: null };
-  return { method: "exact", margins: { inner }, report: { blocking: null, limit_violations: [], ...report } } as unknown as Plan;
+  return {
+    method: "exact",
+    margins: { inner },
+    report: { blocking: null, limit_violations: [], ...report },
+  } as unknown as Plan;
 }
 
 describe("a margin", () => {

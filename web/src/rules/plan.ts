@@ -15,11 +15,16 @@ export function outcomeOf(plan: Plan): Outcome {
   const { status, report } = plan;
   if (status === "queued") return { tone: "active", word: "Queued", detail: "Waiting for the planner" };
   if (status === "running") {
-    return { tone: "active", word: "Solving", detail: `${plan.progress.phase}, ${fixed(100 * plan.progress.fraction, 0)} %` };
+    return {
+      tone: "active",
+      word: "Solving",
+      detail: `${plan.progress.phase}, ${fixed(100 * plan.progress.fraction, 0)} %`,
+    };
   }
   if (status === "failed") return { tone: "danger", word: "Failed", detail: plan.error?.message ?? "No reason given" };
   if (status === "cancelled") return { tone: "", word: "Cancelled", detail: "" };
-  if (status === "interrupted") return { tone: "", word: "Interrupted", detail: "The server stopped while it was solved" };
+  if (status === "interrupted")
+    return { tone: "", word: "Interrupted", detail: "The server stopped while it was solved" };
   if (!report) return { tone: "danger", word: "No report", detail: plan.refusal ?? "" };
   const error = `largest error ${small(report.max_error_deg)} deg`;
   if (plan.flyable) return { tone: "good", word: "Flyable", detail: error };

@@ -30,6 +30,10 @@ it("old data on an open connection disables motion, not Stop", () => {
 
 it("lists that could not be read say what that means for Stop where no rig is known", () => {
   expect(listsWarning(null, false)).toBeNull();
-  expect(listsWarning("The server does not answer", true)).toBe("Not up to date: The server does not answer. Trying again.");
-  expect(listsWarning("The server does not answer", false)).toContain("cannot be sent from here, use the hardware E-stop");
+  expect(listsWarning("The server does not answer", true)).toBe(
+    "Not up to date: The server does not answer. Trying again.",
+  );
+  expect(listsWarning("The server does not answer", false)).toContain(
+    "cannot be sent from here, use the hardware E-stop",
+  );
 });

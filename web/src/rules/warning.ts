@@ -24,5 +24,7 @@ export function linkWarning(link: Link, stale: boolean): string | null {
 export function listsWarning(problem: string | null, known: boolean): string | null {
   if (problem === null) return null;
   const said = `Not up to date: ${problem}. Trying again.`;
-  return known ? said : `${said} No rig is known yet: Stop and E-stop cannot be sent from here, use the hardware E-stop.`;
+  return known
+    ? said
+    : `${said} No rig is known yet: Stop and E-stop cannot be sent from here, use the hardware E-stop.`;
 }

@@ -26,7 +26,9 @@ class Library {
   #misses = 0;
 
   /** Why what is shown may not be what the server has; null where all of it was read. */
-  readonly problem: string | null = $derived(Object.values(this.#problems)[0] ?? this.#plans.problem ?? this.comparisons.problem);
+  readonly problem: string | null = $derived(
+    Object.values(this.#problems)[0] ?? this.#plans.problem ?? this.comparisons.problem,
+  );
   readonly plans = $derived(this.#plans.all);
   readonly chosenTrajectory = $derived(this.trajectories.find(({ sha256 }) => sha256 === this.trajectory) ?? null);
   readonly chosenPlan = $derived(this.plans.find(({ id }) => id === this.plan) ?? null);
@@ -45,7 +47,8 @@ class Library {
     ]);
     this.#misses = this.problem === null ? 0 : this.#misses + 1;
     clearTimeout(this.#retry);
-    if (this.#misses > 0) this.#retry = window.setTimeout(() => void this.refresh(), backoffMs(this.#misses, Math.random()));
+    if (this.#misses > 0)
+      this.#retry = window.setTimeout(() => void this.refresh(), backoffMs(this.#misses, Math.random()));
   }
 
   refreshRigs = (): Promise<void> => this.#read("rigs", api.rigs, (rigs) => (this.rigs = rigs));

@@ -68,7 +68,10 @@ class Operated implements Feed {
     this.close();
     this.name = name;
     this.#token = restoreToken(name);
-    this.#stream = new Stream(api.streamUrl(name), { link: (event) => this.#link(event), batch: (batch) => this.#batch(batch) });
+    this.#stream = new Stream(api.streamUrl(name), {
+      link: (event) => this.#link(event),
+      batch: (batch) => this.#batch(batch),
+    });
     this.#timers = [
       window.setInterval(() => this.#look(), CLOCK_MS),
       window.setInterval(() => void this.#renew(), RENEW_MS),

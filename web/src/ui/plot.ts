@@ -17,6 +17,10 @@ export function ink(): Ink {
   return { text: of("--text-3"), grid: of("--grid"), beyond: of("--beyond"), beyondLine: of("--beyond-line"), of };
 }
 
+/** A logarithmic scale; uPlot's own name for it is a const enum, which a build file by file cannot read. */
+// eslint-disable-next-line @typescript-eslint/no-unsafe-enum-assignment
+export const LOGARITHMIC: Pick<uPlot.Scale, "distr" | "log"> = { distr: 3, log: 10 };
+
 export const AXIS_FONT = '11px "Inter", system-ui, sans-serif';
 
 const plain = (value: number): string => String(value).replace("-", "−");
