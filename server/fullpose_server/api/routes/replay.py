@@ -22,7 +22,7 @@ from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.api.streams.frames import record
 from fullpose_server.api.streams.stream_client import StreamClient
 from fullpose_server.errors import FileError
-from fullpose_server.runtime.contract.telemetry import SAMPLE
+from fullpose_server.runtime.contract.telemetry import FIELDS
 from fullpose_server.runtime.recording.mcap_reader import RecordError
 from fullpose_server.runtime.recording.playback import PlaybackError, RunPlayback
 
@@ -74,7 +74,7 @@ class _Run:
             server_time=time.time(),
             rig=self._rig,
             session=self._session(),
-            fields=list(SAMPLE.names or ()),
+            fields=[field.name for field in FIELDS],
             record=record(),
             replay=ReplayOf(
                 run=self._playback.run,

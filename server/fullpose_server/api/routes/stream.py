@@ -17,7 +17,7 @@ from fullpose_server.api.session_view import session_out
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.api.streams.frames import record
 from fullpose_server.api.streams.stream_client import StreamClient
-from fullpose_server.runtime.contract.telemetry import SAMPLE
+from fullpose_server.runtime.contract.telemetry import FIELDS
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import Command
 
@@ -44,7 +44,7 @@ class _Rig:
             server_time=time.time(),
             rig=self._rig,
             session=self._session(),
-            fields=list(SAMPLE.names or ()),
+            fields=[field.name for field in FIELDS],
             record=record(),
         )
 

@@ -10,7 +10,7 @@ from pydantic import Field, create_model
 
 from fullpose_server.api.schemas.base import CLIENT_NAME, Problem, Wire
 from fullpose_server.api.schemas.session import SessionOut
-from fullpose_server.runtime.contract.telemetry import dtype_description
+from fullpose_server.runtime.contract.telemetry import FIELDS
 from fullpose_server.session.states import State
 
 Topic = Literal["telemetry", "session"]
@@ -121,10 +121,9 @@ class _Telemetry(Wire):
 def _columns() -> dict[str, Any]:
     """A column for each field of the sample: whole numbers, or floats where null stands for what is not finite."""
     columns: dict[str, Any] = {}
-    for field in dtype_description():
-        name = "sample_seq" if field["name"] == "seq" else field["name"]
-        value: Any = int if field["type"].lstrip("<|").startswith(("u", "i")) else float | None
-        columns[name] = (list[value] if field["count"] == 1 else list[list[value]], ...)
+    for field in FIELDS:
+        value: Any = int if field.integer else float | None
+        columns[field.column] = (list[list[value]] if field.parts else list[value], ...)
     return columns
 
 

@@ -13,7 +13,7 @@ from typing import Protocol
 import msgspec
 
 from fullpose_server.api.schemas.stream import Encoding
-from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
+from fullpose_server.runtime.contract.telemetry import FIELDS, Samples
 
 FRESH_S = 0.004  # how old a sample that is sent as the newest may be at most
 SESSION_FRESH_S = 0.05  # the same of a session that has not changed
@@ -77,7 +77,7 @@ def encoded(rows: Samples, encoding: Encoding) -> bytes:
     """The part of a frame that is the same for all clients: binary records, or the JSON columns after the envelope."""
     if encoding == "binary":
         return rows.tobytes()
-    columns = {"sample_seq" if name == "seq" else name: rows[name].tolist() for name in SAMPLE.names or ()}
+    columns = {field.column: rows[field.name].tolist() for field in FIELDS}
     # msgspec writes nan and infinity as null, which is what JSON has for them.
     return _encode(columns)[1:]
 

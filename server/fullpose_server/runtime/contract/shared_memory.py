@@ -2,7 +2,8 @@
 
 One mapped file a rig (under /dev/shm where there is one): a header of single numbers, the lateness histogram, the
 session's snapshot as JSON, a ring of events as JSON, and the ring of samples. Everything has one writer; the E-stop and
-stop requests are times that the server writes and the loop compares, so they need no queue and no lock.
+stop requests are times that the server writes and the loop compares, so they need no queue and no lock. A number that
+tells of something else is written after it, and read before it, as `memory_order` has it.
 """
 
 import mmap
@@ -15,6 +16,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose_server.runtime.contract.memory_order import acquire, release
 from fullpose_server.runtime.contract.telemetry import SAMPLE, Ring, Samples
 
 MAGIC = 0x46504C5053523031
@@ -110,24 +112,31 @@ class Shared:
             raise SharedError(f"snapshot of {len(snapshot)} bytes: at most {SNAPSHOT_BYTES}")
         version = int(self._text["version"][0])
         self._text["version"] = version + 1
+        release()
         start = _TEXT_AT + 16
         self._map[start : start + len(snapshot)] = snapshot
         self._text["length"] = len(snapshot)
+        release()
         self._text["version"] = version + 2
+        release()
         self.header["revision"] = revision
 
     def snapshot(self, *, wait: bool = True) -> bytes | None:
         """The newest snapshot; None before the first, or where the writer died inside `publish`.
 
+        It is no older than what was read of the header before (a revision, an answer to a stop).
         It waits for a writer that was put aside in the middle of it, some milliseconds at most; or not at all.
         """
         for attempt in range(64 if wait else 16):
             if attempt >= 16:
                 time.sleep(2e-4)
+            acquire()
             before = int(self._text["version"][0])
+            acquire()
             if before and before % 2 == 0:
                 start = _TEXT_AT + 16
                 data = bytes(self._map[start : start + int(self._text["length"][0])])
+                acquire()
                 if int(self._text["version"][0]) == before:
                     return data
         return None
@@ -144,14 +153,18 @@ class Shared:
         index = sequence % EVENTS
         slot = _EVENTS_AT + index * EVENT.itemsize
         self._events["seq"][index] = 0
+        release()
         self._events["length"][index] = len(data)
         self._map[slot + 16 : slot + 16 + len(data)] = data
+        release()
         self._events["seq"][index] = sequence
+        release()
         self.header["event_head"] = sequence
 
     def events_since(self, sequence: int) -> tuple[list[dict[str, Any]], int]:
         """The events after `sequence`, oldest first, and the sequence to ask from next time."""
         head = int(self.header["event_head"][0])
+        acquire()
         if sequence > head:
             sequence = 0
         events = []
@@ -159,6 +172,7 @@ class Shared:
             index = number % EVENTS
             slot = _EVENTS_AT + index * EVENT.itemsize + 16
             data = bytes(self._map[slot : slot + int(self._events["length"][index])])
+            acquire()
             if int(self._events["seq"][index]) == number:
                 events.append(msgspec.json.decode(data))
         return events, head

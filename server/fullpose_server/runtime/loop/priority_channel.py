@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from fullpose_server.runtime.contract.memory_order import acquire, release
 from fullpose_server.runtime.loop.clock import Clock
 from fullpose_server.session.states import Command
 
@@ -24,6 +25,7 @@ class PriorityChannel:
         for channel, command in _CHANNELS:
             asked = int(self._header[f"{channel}_request_ns"][0])
             if asked != int(self._header[f"{channel}_done_ns"][0]):
+                acquire()
                 found.append((command, bytes(self._header[f"{channel}_who"][0]).decode("utf-8", "replace")))
                 self._obeyed.append((channel, asked))
                 self._estop_unwritten = channel == "estop" or self._estop_unwritten
@@ -41,7 +43,8 @@ class PriorityChannel:
         return bool(self._obeyed)
 
     def done(self) -> None:
-        """Tell them."""
+        """Tell them; what it led to is published before."""
+        release()
         for channel, asked in self._obeyed:
             self._header[f"{channel}_done_ns"] = asked
         self._obeyed.clear()

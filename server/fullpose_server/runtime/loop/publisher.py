@@ -11,6 +11,8 @@ from fullpose_server.runtime.loop.context import Parts
 from fullpose_server.runtime.motion.generator import Mode
 
 _DRIVE_BRAKES = int(Status.BRAKING)
+# As plain numbers: flags make an object of every "or".
+_LATE, _LIMITED, _LEAD, _ENABLED, _BRAKING, _STALE = (int(flag) for flag in telemetry.Flag)
 _DEG = 180.0 / math.pi
 _REFRESH_S = 0.25  # at least this often, so that the lease's age is fresh
 
@@ -81,16 +83,16 @@ class Publisher:
         row["time_ns"] = now_ns
         row["wall_ns"] = p.clock.wall_ns()
         row["state"] = machine.state.code
-        flags = telemetry.LATE if missed else 0
-        flags |= telemetry.ENABLED if state.commanded else 0
+        flags = _LATE if missed else 0
+        flags |= _ENABLED if state.commanded else 0
         if motion.mode is Mode.BRAKE or state.drive_brakes or state.status & _DRIVE_BRAKES:
-            flags |= telemetry.BRAKING
+            flags |= _BRAKING
         if motion.mode is Mode.PATH and math.isnan(motion.q[0]):
-            flags |= telemetry.LEAD
+            flags |= _LEAD
         if motion.stale:
-            flags |= telemetry.STALE
+            flags |= _STALE
         if motion.limited:
-            flags |= telemetry.LIMITED
+            flags |= _LIMITED
         row["flags"] = flags
         row["revision"] = machine.revision
         row["path_time_s"] = motion.path_time_s

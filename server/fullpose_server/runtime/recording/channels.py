@@ -5,22 +5,21 @@ from typing import Any
 import msgspec
 from mcap.writer import Writer
 
-from fullpose_server.runtime.contract.telemetry import SAMPLE
+from fullpose_server.runtime.contract.telemetry import FIELDS
 from fullpose_server.session.states import STATES
 
 TELEMETRY, EVENTS, STATISTICS = "/telemetry", "/events", "/statistics"
 # One plain type a field, and no null: Foxglove and Lichtblick refuse a channel whose schema has more than they know.
 # What is not a number, or has no value, is left out of its message.
 _NUMBER, _INTEGER, _STRING, _TRUTH = ({"type": kind} for kind in ("number", "integer", "string", "boolean"))
-_INTEGERS = ("seq", "time_ns", "wall_ns", "flags", "revision", "tick")
 
 
 def _sample_schema() -> dict[str, Any]:
-    """Of a telemetry message: `SAMPLE`'s fields, the state by name."""
+    """Of a telemetry message: `FIELDS`, the state by name."""
     properties: dict[str, Any] = {}
-    for name in SAMPLE.names or ():
-        kind = _INTEGER if name in _INTEGERS else _NUMBER
-        properties[name] = {"type": "array", "items": _NUMBER} if SAMPLE[name].shape else kind
+    for field in FIELDS:
+        kind = _INTEGER if field.integer else _NUMBER
+        properties[field.name] = {"type": "array", "items": kind} if field.parts else kind
     properties["state"] = _STRING | {"enum": list(STATES)}
     return {"title": "fullpose.Sample", "type": "object", "properties": properties}
 

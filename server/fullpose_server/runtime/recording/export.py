@@ -10,9 +10,8 @@ import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
 from mcap.writer import Writer
 
-from fullpose.rig import FRAMES
 from fullpose_server.errors import FileError
-from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
+from fullpose_server.runtime.contract.telemetry import FIELDS, Samples
 from fullpose_server.runtime.recording import channels
 from fullpose_server.runtime.recording.mcap_reader import (
     RecordError,
@@ -23,33 +22,20 @@ from fullpose_server.runtime.recording.mcap_reader import (
 )
 from fullpose_server.session.states import STATES
 
-_UNITS = {
-    "demand": "deg",
-    "demand_rate": "deg_s",
-    "demand_acceleration": "deg_s2",
-    "measured": "deg",
-    "measured_rate": "deg_s",
-    "following_error_deg": "deg",
-}
-_QUATERNION = ("w", "x", "y", "z")
-
 
 def table(rows: Samples) -> pa.Table:
     """One column a number, named with its frame and unit; what is not a number is null."""
     columns: dict[str, Any] = {}
     start = rows["time_ns"][0] if rows.size else 0
     columns["time_s"] = (rows["time_ns"] - start) / 1e9
-    for name in SAMPLE.names or ():
-        values = rows[name]
-        if name == "state":
-            columns[name] = [STATES[code].value for code in values.tolist()]
-        elif name == "target":
-            columns |= {f"target_q{axis}": values[:, k] for k, axis in enumerate(_QUATERNION)}
-        elif name in _UNITS:
-            stem = name.removesuffix("_deg")
-            columns |= {f"{stem}_{frame}_{_UNITS[name]}": values[:, k] for k, frame in enumerate(FRAMES)}
+    for field in FIELDS:
+        values = rows[field.name]
+        if field.name == "state":
+            columns[field.name] = [STATES[code].value for code in values.tolist()]
+        elif field.parts:
+            columns |= {name: values[:, k] for k, name in enumerate(field.part_names)}
         else:
-            columns[name] = values
+            columns[field.name] = values
     return pa.table({name: pa.array(_plain(values), from_pandas=True) for name, values in columns.items()})
 
 

@@ -21,7 +21,7 @@ from mcap.records import Channel, Chunk, Message, Metadata
 from mcap.stream_reader import breakup_chunk, get_chunk_data_stream
 from mcap.writer import MCAP0_MAGIC
 
-from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
+from fullpose_server.runtime.contract.telemetry import FIELDS, SAMPLE, Samples
 from fullpose_server.runtime.recording.channels import EVENTS, TELEMETRY
 from fullpose_server.session.states import STATES
 
@@ -179,12 +179,12 @@ def read_events(path: Path) -> list[dict[str, Any]]:
 
 def _row(raw: dict[str, Any]) -> tuple[Any, ...]:
     values = []
-    for name in SAMPLE.names or ():
-        value = raw.get(name)
-        if name == "state":
-            value = _CODES[raw[name]]
+    for field in FIELDS:
+        value = raw.get(field.name)
+        if field.name == "state":
+            value = _CODES[raw[field.name]]
         elif value is None:  # not a number, or four that are none
-            value = (np.nan,) * 4 if SAMPLE[name].shape else np.nan
+            value = (np.nan,) * len(field.parts) if field.parts else np.nan
         elif isinstance(value, list):
             value = [np.nan if item is None else item for item in value]
         values.append(value)

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 from mcap.writer import Writer
 
-from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
+from fullpose_server.runtime.contract.telemetry import FIELDS, Samples
 from fullpose_server.runtime.recording import channels
 from fullpose_server.session.states import STATES
 
@@ -77,7 +77,7 @@ class RunRecord:
 
     def add_samples(self, rows: Samples) -> None:
         """Add telemetry rows (n,)."""
-        columns = {name: rows[name].tolist() for name in SAMPLE.names or ()}
+        columns = {field.name: rows[field.name].tolist() for field in FIELDS}
         columns["state"] = [STATES[code] for code in columns["state"]]
         names = tuple(columns)
         times = columns["time_ns"]

@@ -12,7 +12,7 @@ from uuid import uuid4
 import numpy as np
 
 from fullpose_server.errors import FileError, NotFoundError
-from fullpose_server.runtime.contract.telemetry import LEAD, Samples
+from fullpose_server.runtime.contract.telemetry import Flag, Samples
 from fullpose_server.runtime.recording.mcap_reader import (
     RecordError,
     is_whole,
@@ -164,7 +164,7 @@ def summarise(path: Path) -> RunSummary:
     """What the whole record says, but for whether it is complete. Raises `RecordError`."""
     brief = _brief(path)
     rows, events = read_record(path)
-    flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & LEAD == 0)
+    flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & Flag.LEAD == 0)
     return replace(
         brief,
         started=float(rows["wall_ns"][0]) / 1e9 if rows.size else brief.started,

@@ -6,6 +6,7 @@ from collections.abc import Coroutine
 from typing import Any
 
 from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract.memory_order import release
 from fullpose_server.runtime.supervisor.process_view import ProcessView
 from fullpose_server.session.errors import IllegalCommandError
 from fullpose_server.session.states import Command, State
@@ -26,6 +27,7 @@ class PriorityChannel:
         header = self._view.memory.header
         header[f"{command}_who"] = who.encode()[:63]
         asked = time.monotonic_ns()
+        release()
         header[f"{command}_request_ns"] = asked
         return asked
 
