@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
+from fullpose.bounds import limited_name
 from fullpose.resample import resample
 from fullpose.rig import FRAMES, builtin_rigs
-from fullpose.solution import limited_name
 from fullpose.solve import solve
 from fullpose.verify import verify
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Flags = NDArray[np.uint8]
-Codes = NDArray[np.int16]  # `solution.limited_code` of each sample
+Codes = NDArray[np.int16]  # `bounds.limited_code` of each sample
 Counts = NDArray[np.int32]
 
 Progress = Callable[[int, int], None]  # done, total; may raise `errors.CancelledError`

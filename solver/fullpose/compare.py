@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fullpose._typing import Array, Integers
+from fullpose.bounds import limited_name
 from fullpose.errors import MethodError
 from fullpose.flight import check_flight
 from fullpose.registry import Stepwise, Variant, find_method, method_options, parse_variant
 from fullpose.rig import FRAMES, LIMITS, Rig
-from fullpose.solution import Solution, limited_name
+from fullpose.solution import Solution
 from fullpose.solve import solve
 from fullpose.verify import Verification, verify
 

@@ -18,12 +18,11 @@ import numpy as np
 
 from fullpose._jit import inlined
 from fullpose._typing import Array, Codes
+from fullpose.bounds import CODES_PER_FRAME, limited_code
 from fullpose.rig import Rig
-from fullpose.solution import limited_code
 
 MIN, MAX, RATE, ACCELERATION, WEIGHT, HOME = range(6)
 POSITION_CODE, RATE_CODE, ACCELERATION_CODE = (limited_code(0, limit) for limit in range(3))
-CODES_PER_FRAME = limited_code(1, 0) - limited_code(0, 0)
 
 # Rounding must not turn a rate on its limit into one above it; the braking distance is reckoned with a little less
 # than the deceleration there is, so that rounding cannot empty the box either.

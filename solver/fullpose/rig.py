@@ -16,9 +16,28 @@ from numpy.typing import NDArray
 from fullpose._typing import Integers
 from fullpose.errors import RigError
 
-FRAMES = ("base", "outer", "middle", "inner")
-LIMITS = ("position", "rate", "acceleration")
 X, Y, Z, ABSENT = 0, 1, 2, -1
+
+
+class Frame(StrEnum):
+    """The frames from the outside in: a frame's index is its column in every array."""
+
+    BASE = "base"
+    OUTER = "outer"
+    MIDDLE = "middle"
+    INNER = "inner"
+
+
+class Limit(StrEnum):
+    """The kinds of limits that a frame has, by the order of the derivative that is limited."""
+
+    POSITION = "position"
+    RATE = "rate"
+    ACCELERATION = "acceleration"
+
+
+FRAMES = tuple(Frame)
+LIMITS = tuple(Limit)
 
 
 class Geometry(StrEnum):

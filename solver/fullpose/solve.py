@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fullpose._typing import Array, Clock, Codes, Counts, Progress
+from fullpose.bounds import limited_name
 from fullpose.flight import check_flight, check_start
 from fullpose.methods.base import Stepper
 from fullpose.registry import DEFAULT, Planner, find_method
 from fullpose.rig import Rig
-from fullpose.solution import Blocking, Solution, limited_name
+from fullpose.solution import Blocking, Solution
 from fullpose.verify import attitude_errors, payload_attitudes
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from fullpose._typing import Array
 from fullpose.errors import InputError
-from fullpose.rig import FRAMES, LIMITS, Rig
+from fullpose.rig import FRAMES, LIMITS, Frame, Limit, Rig
 
 POSITION_TOLERANCE = math.radians(1e-9)
 TOLERANCE = 1e-6  # of a rate or acceleration limit
@@ -26,8 +26,8 @@ class Violation:
     """
 
     time: float
-    frame: str
-    limit: str
+    frame: Frame
+    limit: Limit
     value: float
     samples: int
 
@@ -113,7 +113,7 @@ def verify(time: ArrayLike, angles: ArrayLike, rig: Rig, attitude: ArrayLike | N
     return Verification(max_error, max_matrix_error, peaks, tuple(violations))
 
 
-def _runs(time: Array, value: Array, excess: Array, frame: str, limit: str) -> list[Violation]:
+def _runs(time: Array, value: Array, excess: Array, frame: Frame, limit: Limit) -> list[Violation]:
     over = np.flatnonzero(excess > 0.0)
     runs = np.split(over, np.flatnonzero(np.diff(over) > 1) + 1) if over.size else []
     worst = [int(run[np.argmax(excess[run])]) for run in runs]

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from fullpose.attitude import dcm_from_quaternion
+from fullpose.bounds import limited_code
 from fullpose.compare import EXACT_WITHIN, compare, failures, figures
 from fullpose.errors import CancelledError, InputError, MethodError
 from fullpose.registry import variant
 from fullpose.rig import FRAMES, builtin_rigs
 from fullpose.scenarios import SCENARIOS
-from fullpose.solution import Solution, limited_code
+from fullpose.solution import Solution
 from fullpose.verify import verify
 
 RIGS = builtin_rigs()

@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from fullpose.bounds import limited_name
 from fullpose.limits import approach_rate, inside, limit_box, limit_table, tolerances
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
-from fullpose.solution import limited_name
 from fullpose.verify import verify
 
 

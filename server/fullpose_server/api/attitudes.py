@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from fullpose._typing import Array
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
-from fullpose.solution import limited_name
+from fullpose.bounds import limited_name
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.solve import Attitudes, Limited
 

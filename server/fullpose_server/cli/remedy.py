@@ -6,12 +6,11 @@ from typing import Annotated
 
 import typer
 
+from fullpose.vocabulary import RemedyKind
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import check_outputs
 from fullpose_server.cli._progress import progress_bar
-
-KINDS = "slow_down, heading_offset, mounting_offset, relax"
 
 
 def register(app: typer.Typer) -> None:
@@ -24,7 +23,7 @@ def remedy(
         Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
     ],
     rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
-    kind: Annotated[str, typer.Option(help=f"{KINDS}.")],
+    kind: Annotated[str, typer.Option(help=f"{', '.join(RemedyKind)}.")],
     out: Annotated[Path, typer.Option(help="Angles of the changed flight; Parquet where it ends in .parquet.")],
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON, with what was changed.")] = None,
     frame: Annotated[str | None, typer.Option(help="relax: of this frame alone.")] = None,

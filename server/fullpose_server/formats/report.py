@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fullpose.bounds import limited_name
 from fullpose.compare import EXACT_WITHIN
 from fullpose.rig import FRAMES, Rig
-from fullpose.solution import Solution, limited_name
+from fullpose.solution import Solution
 from fullpose.verify import Verification
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ from fullpose._typing import Array
 from fullpose.plan import PlanOptions
 from fullpose.plan.remedies import NOTHING, Remedy, offset, relax, slow_down
 from fullpose.rig import FRAMES, Rig
+from fullpose.vocabulary import RemedyKind
 from fullpose_server.errors import NoRemedyError
 from fullpose_server.formats.report import UNITS
 from fullpose_server.planning.remedy_request import RemedyRequest
@@ -39,34 +40,33 @@ def find_remedy(
     kind. Raises `SolverError`, `ServerError` for names that are none.
     """
     asked.check(rig)
-    kind, frame, limit = asked.kind, asked.frame, asked.limit
+    kind, frame, limit = RemedyKind(asked.kind), asked.frame, asked.limit
     match kind:
-        case "slow_down":
+        case RemedyKind.SLOW_DOWN:
             found = [slow_down(time, attitude, rig, start, options, progress)]
-        case "heading_offset" | "mounting_offset":
-            which = kind.removesuffix("_offset")
-            found = [offset(time, attitude, rig, which, start, options, progress)]
-        case _:
+        case RemedyKind.HEADING_OFFSET | RemedyKind.MOUNTING_OFFSET:
+            found = [offset(time, attitude, rig, kind, start, options, progress)]
+        case RemedyKind.RELAX:
             found = relax(time, attitude, rig, frame, limit, start, options, progress)
     if not found:
         where = " ".join(filter(None, (frame, limit))) or "single"
         raise NoRemedyError(f"no {where} limit, raised, makes this flight fit {rig.name}: slow it down or turn it")
     first, *others = (_described(kind, remedy, rig) for remedy in found)
     sufficient = found[0].plan.ready
-    return Found(found[0], {"kind": kind, **first, "sufficient": sufficient, "alternatives": others})
+    return Found(found[0], {"kind": kind.value, **first, "sufficient": sufficient, "alternatives": others})
 
 
-def _described(kind: str, remedy: Remedy, rig: Rig) -> dict[str, Any]:
+def _described(kind: RemedyKind, remedy: Remedy, rig: Rig) -> dict[str, Any]:
     """what, value, unit, statement."""
     value = remedy.value
-    if kind == "slow_down":
+    if kind == RemedyKind.SLOW_DOWN:
         said = "flown as it is" if value == 1.0 else f"flown {value:.4g} times as slow"
         return {"what": remedy.what, "value": value, "unit": "times", "statement": said}
     angle = math.degrees(value)
     if remedy.what == NOTHING:
         return {"what": NOTHING, "value": 0.0, "unit": "deg", "statement": "flown as it is: no limit need be raised"}
-    if kind != "relax":
-        whole = "the whole flight" if kind == "heading_offset" else "the payload in its mount"
+    if kind != RemedyKind.RELAX:
+        whole = "the whole flight" if kind == RemedyKind.HEADING_OFFSET else "the payload in its mount"
         said = f"{whole} turned by {angle:.4g} deg of {remedy.what}" if value else f"{whole} as it is"
         return {"what": remedy.what, "value": angle, "unit": "deg", "statement": said}
     frame, limit = remedy.what.split()

@@ -1,14 +1,13 @@
 """What a remedy is asked for with; light, so that the API takes its words from here."""
 
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 from fullpose.rig import LIMITS, Rig
+from fullpose.vocabulary import RemedyKind
 from fullpose_server.errors import ServerError
 from fullpose_server.planning.plan_request import check_frame
 
-RemedyKind = Literal["slow_down", "heading_offset", "mounting_offset", "relax"]
-KINDS: tuple[str, ...] = get_args(RemedyKind)
+KINDS = tuple(RemedyKind)
 
 
 @dataclass(frozen=True)
@@ -26,7 +25,7 @@ class RemedyRequest:
         """
         if self.kind not in KINDS:
             raise ServerError(f"remedy {self.kind!r}: expected one of {', '.join(KINDS)}")
-        if self.kind != "relax" and (self.frame is not None or self.limit is not None):
+        if self.kind != RemedyKind.RELAX and (self.frame is not None or self.limit is not None):
             raise ServerError(f"remedy {self.kind} has no frame and no limit: they are for relax")
         check_frame(self.frame, rig)
         if self.limit is not None and self.limit not in LIMITS:

@@ -22,6 +22,7 @@ import numpy as np
 
 from fullpose._jit import inlined, inner
 from fullpose._typing import Array
+from fullpose.bounds import EXACT
 from fullpose.charts import project_inner
 from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose, rotation_error
@@ -43,7 +44,6 @@ from fullpose.methods.limited import (
 from fullpose.methods.state import Flight
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.solution import EXACT
 from fullpose.step import quadratic_step, solve_symmetric
 
 

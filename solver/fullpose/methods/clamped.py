@@ -24,6 +24,7 @@ import numpy as np
 
 from fullpose._jit import inner
 from fullpose._typing import Array, Flags
+from fullpose.bounds import EXACT
 from fullpose.kinematics import jacobian, null_vector, payload_attitude, rotation_error
 from fullpose.limits import WEIGHT
 from fullpose.methods.base import StepMethod, Stepper
@@ -31,7 +32,6 @@ from fullpose.methods.limited import Gains, LimitedStepper, binding_code, block_
 from fullpose.methods.state import Flight
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.solution import EXACT
 from fullpose.step import DAMPED_BELOW, solve_symmetric, squared_damping
 
 HELD = math.radians(1e-9)  # a sample within this of the attitude is not limited; nor one within the tolerance

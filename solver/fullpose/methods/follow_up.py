@@ -17,6 +17,7 @@ import numpy as np
 
 from fullpose._jit import kernel
 from fullpose._typing import Array, Counts, Integers
+from fullpose.bounds import EXACT
 from fullpose.charts import base_chart, nearest
 from fullpose.errors import MethodError
 from fullpose.limits import ACCELERATION, RATE, approach_rate, limit_box, limit_table
@@ -33,7 +34,6 @@ from fullpose.methods.unlimited import (
 )
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.solution import EXACT
 
 # The method's memory in the state: the base's rate, whether it is out of the way, where to, and the last interval.
 BASE_RATE, ASIDE, ASIDE_AT, PAST = MEMORY, MEMORY + 1, MEMORY + 2, MEMORY + 3

@@ -18,6 +18,7 @@ import numpy as np
 
 from fullpose._jit import inlined, inner, kernel
 from fullpose._typing import Array, Codes, Counts
+from fullpose.bounds import EXACT
 from fullpose.charts import project
 from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose, payload_attitude, rotate_back, rotation_error, self_motion
@@ -26,7 +27,6 @@ from fullpose.methods.base import Block
 from fullpose.methods.start_pose import start_pose
 from fullpose.methods.state import FLIGHT, FRESH, Flight, advance, hold_position, new_flight, prepare
 from fullpose.rig import Rig
-from fullpose.solution import EXACT
 from fullpose.step import box_least_squares, clamp, null_interval, squared_damping
 
 SLIDES = 8  # along the curve to the box; two or three do it, unless there is no way

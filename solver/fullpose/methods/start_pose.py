@@ -4,11 +4,11 @@ import numpy as np
 
 from fullpose._jit import inner, kernel
 from fullpose._typing import Array
+from fullpose.bounds import EXACT, limited_code
 from fullpose.charts import TURN, base_chart, inner_chart, nearest, project
 from fullpose.kinematics import four_axis_pose, rotation_error
 from fullpose.limits import HOME, MAX, MIN, WEIGHT, limit_table
 from fullpose.rig import Rig
-from fullpose.solution import EXACT, limited_code
 from fullpose.step import box_least_squares
 
 GRID = 720  # samples of each chart; half a degree

@@ -12,11 +12,11 @@ import numpy as np
 
 from fullpose._jit import kernel
 from fullpose._typing import Array, Counts, Integers
+from fullpose.bounds import EXACT
 from fullpose.errors import MethodError
 from fullpose.methods.base import Block
 from fullpose.methods.start_pose import start_pose
 from fullpose.rig import Rig
-from fullpose.solution import EXACT
 
 # State of a flight in progress, one array: d (4), the last step (4), then
 LAST_STEP, TARGET, CLOCK, PLACED, MEMORY = 4, 8, 17, 18, 19

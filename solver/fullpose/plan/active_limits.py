@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._typing import Array, Codes, Integers
+from fullpose.bounds import EXACT, limited_code
 from fullpose.rig import Rig
-from fullpose.solution import EXACT, limited_code
 from fullpose.trajectory.curve import LOCKED
 from fullpose.trajectory.linearisation import POSITION_UNIT
 from fullpose.verify import attitude_errors, differences, payload_attitudes

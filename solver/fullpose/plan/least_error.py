@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from fullpose._jit import kernel
 from fullpose._typing import Array, Codes, Flags
+from fullpose.bounds import EXACT
 from fullpose.limits import ACCELERATION, MAX, MIN, approach_rate, limit_box, limit_table
 from fullpose.methods.start_pose import start_pose
 from fullpose.plan.active_limits import active_limits
 from fullpose.plan.fallback import EXACT_ERROR, Fallback
 from fullpose.rig import Rig
-from fullpose.solution import EXACT
 from fullpose.trajectory.bspline import WIDTH, Basis, spline_basis
 from fullpose.trajectory.constraints import Limits, rig_limits, rows_within_reach
 from fullpose.trajectory.linearisation import ROW, displaced, error_bands, over_limits

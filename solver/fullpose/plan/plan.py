@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fullpose._typing import Array, Codes, Counts, Progress
+from fullpose.bounds import EXACT, limited_code
 from fullpose.errors import InputError
 from fullpose.flight import check_flight, check_start
 from fullpose.methods.start_pose import start_pose
@@ -16,13 +17,14 @@ from fullpose.plan.least_error import BestEffort, afresh, least_error
 from fullpose.plan.strategies import Search
 from fullpose.plan.three_axis import three_axis_path
 from fullpose.plan.verdict import Margins, Verdict, check, margins
-from fullpose.rig import FRAMES, LIMITS, Rig
-from fullpose.solution import EXACT, Blocking, Solution, limited_code
+from fullpose.rig import FRAMES, LIMITS, Limit, Rig
+from fullpose.solution import Blocking, Solution
 from fullpose.trajectory.curve import polish
 from fullpose.trajectory.nodes import OVERLAP
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.sqp import MET, RATE_MET
 from fullpose.trajectory.windows import Path, overrun
+from fullpose.vocabulary import Decision
 
 STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a node path
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
@@ -112,7 +114,7 @@ class _Flown:
     angles: Array
     iterations: Counts
     limited: Codes
-    decided_by: str
+    decided_by: Decision
     blocking: Blocking | None
     grid: float
 
@@ -143,7 +145,8 @@ def _fly(search: Search) -> _Flown:
         blocking = Blocking(
             float(time[search.samples[node_path.reached]]), FRAMES[node_path.frame], LIMITS[node_path.limit]
         )
-        decided_by = blocking.limit if blocking.limit != "acceleration" else "start_rate"  # only its inertia closes so
+        closed = {Limit.POSITION: Decision.POSITION, Limit.RATE: Decision.RATE, Limit.ACCELERATION: Decision.START_RATE}
+        decided_by = closed[blocking.limit]  # only the inertia of a start rate closes a node path by acceleration
         angles = np.repeat(rig.home[None], n, axis=0)
         limited = np.full(n, limited_code(node_path.frame, node_path.limit), np.int16)
         if options.best_effort:
@@ -153,7 +156,7 @@ def _fly(search: Search) -> _Flown:
     best: tuple[float, Path] | None = None
     for attempt in range(options.alternatives + 1):
         if attempt == STEPS_AFTER and (fallback := search.refine_step(search.fallback.exact())) is not None:
-            return _Flown(fallback.angles, fallback.iterations, none, "checked", None, grid)
+            return _Flown(fallback.angles, fallback.iterations, none, Decision.CHECKED, None, grid)
         if attempt > 0:
             following = search.alternative(attempt, grid, slack)
             if not following.found:
@@ -164,25 +167,25 @@ def _fly(search: Search) -> _Flown:
         if best is None or over < best[0]:
             best = over, path
         if over <= MET:
-            return _Flown(path.angles, path.iterations, none, "checked", None, grid)
+            return _Flown(path.angles, path.iterations, none, Decision.CHECKED, None, grid)
         search.steer_away(path)
     assert best is not None
     path = best[1]
     over, sample, frame, limit = overrun(time, path.angles, rig)
     blocking = Blocking(float(time[sample]), FRAMES[frame], LIMITS[limit])
-    decided_by = "acceleration"
+    decided_by = Decision.ACCELERATION
     if over <= MET:  # inside every limit, but for the start rate
         assert search.start_rate is not None
         off = np.abs(search.start_rate - (path.angles[1] - path.angles[0]) / (time[1] - time[0]))
-        blocking, decided_by = Blocking(float(time[1]), FRAMES[int(np.argmax(off))], "rate"), "start_rate"
+        blocking, decided_by = Blocking(float(time[1]), FRAMES[int(np.argmax(off))], Limit.RATE), Decision.START_RATE
     if not options.best_effort:
         return _Flown(path.angles, path.iterations, none, decided_by, blocking, grid)
     for way in search.fallback.foreseen():
         if (fallback := search.refine_step(way)) is not None:
-            return _Flown(fallback.angles, fallback.iterations, none, "checked", None, grid)
+            return _Flown(fallback.angles, fallback.iterations, none, Decision.CHECKED, None, grid)
     effort = least_error(time, search.attitude, path.angles, rig, options, search.start, search.fallback)
     if not effort.limited.any() and search.start_rate is None:  # not even that gave the attitude up
-        return _Flown(effort.angles, path.iterations, effort.limited, "checked", None, grid)
+        return _Flown(effort.angles, path.iterations, effort.limited, Decision.CHECKED, None, grid)
     return _Flown(effort.angles, path.iterations, effort.limited, decided_by, blocking, grid)
 
 
@@ -202,18 +205,26 @@ def _least_error(search: Search) -> BestEffort:
 
 
 STATEMENTS = {
-    "checked": "Feasible: every sample checked by code apart from the planner.",
-    "position": "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
-    "no path of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
-    "Grid-complete away from the singularity, not a theorem.",
-    "rate": "Infeasible: no path of nodes obeys the rate limits past the blocking time, even with every edge widened "
-    "by the grid's covering step. Grid-complete away from the singularity, not a theorem.",
-    "acceleration": "Infeasible as far as the search went: node paths inside the rate limits exist, but none of those "
-    "refined came inside every limit, with or without regard to the accelerations; "
-    "the blocking place is the worst of the best one. Evidence, not a proof.",
-    "start_rate": "Infeasible with the start rate asked for: no path was found that takes it up inside the limits; the "
-    "blocking frame is the one it fails by. Evidence, not a proof.",
-    "three-axis": "Infeasible: a three-axis rig has no freedom but the choice of the Euler set and its turns.",
+    Decision.CHECKED: "Feasible: every sample checked by code apart from the planner.",
+    Decision.POSITION: (
+        "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
+        "no path of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
+        "Grid-complete away from the singularity, not a theorem."
+    ),
+    Decision.RATE: (
+        "Infeasible: no path of nodes obeys the rate limits past the blocking time, even with every edge widened "
+        "by the grid's covering step. Grid-complete away from the singularity, not a theorem."
+    ),
+    Decision.ACCELERATION: (
+        "Infeasible as far as the search went: node paths inside the rate limits exist, but none of those "
+        "refined came inside every limit, with or without regard to the accelerations; "
+        "the blocking place is the worst of the best one. Evidence, not a proof."
+    ),
+    Decision.START_RATE: (
+        "Infeasible with the start rate asked for: no path was found that takes it up inside the limits; the "
+        "blocking frame is the one it fails by. Evidence, not a proof."
+    ),
+    Decision.THREE_AXIS: "Infeasible: a three-axis rig has no freedom but the choice of the Euler set and its turns.",
 }
 
 
@@ -240,7 +251,7 @@ def _finished(
     if blocking is None and found.violations:
         first = found.violations[0]
         blocking = Blocking(first.time, first.frame, first.limit)
-        decided_by = "acceleration" if rig.geometry.redundant else "three-axis"
+        decided_by = Decision.ACCELERATION if rig.geometry.redundant else Decision.THREE_AXIS
     between = found.between
     statement = f"{STATEMENTS[decided_by]} {between.sentence()}" if blocking is None else STATEMENTS[decided_by]
     verdict = Verdict(
@@ -263,9 +274,9 @@ def _three_axis(time: Array, attitude: Array, rig: Rig, start: Array | None, opt
     over, sample, frame, limit = overrun(time, angles, rig)
     iterations, limited = np.zeros(len(time), np.int32), np.zeros(len(time), np.int16)
     if over <= MET:
-        return _Flown(angles, iterations, limited, "checked", None, math.nan)
+        return _Flown(angles, iterations, limited, Decision.CHECKED, None, math.nan)
     blocking = Blocking(float(time[sample]), FRAMES[frame], LIMITS[limit])
     if not options.best_effort:
-        return _Flown(angles, iterations, limited, "three-axis", blocking, math.nan)
+        return _Flown(angles, iterations, limited, Decision.THREE_AXIS, blocking, math.nan)
     effort = least_error(time, attitude, angles, rig, options)
-    return _Flown(effort.angles, iterations, effort.limited, "three-axis", blocking, math.nan)
+    return _Flown(effort.angles, iterations, effort.limited, Decision.THREE_AXIS, blocking, math.nan)

@@ -22,23 +22,25 @@ from fullpose.resample import continuous, resample
 from fullpose.rig import FRAMES, LIMITS, FrameLimits, Rig
 from fullpose.trajectory.curve import LOCKED
 from fullpose.trajectory.options import PlanOptions
+from fullpose.vocabulary import RemedyKind
 
 TRIAL_INTERVAL = 0.005  # [s] between the samples that a trial looks at
 RELATIVE = 0.01  # to which factors are found
 NOTHING = "nothing"  # what is changed of a flight that fits as it is, where limits are raised
 AXES = ("roll", "yaw", "pitch")  # of the body's x, y, z
+UP = AXES[1]
+OFFSETS = (RemedyKind.HEADING_OFFSET, RemedyKind.MOUNTING_OFFSET)
 
 
 @dataclass(frozen=True)
 class Remedy:
     """A remedy: what was changed and by how much, and the flight, rig and plan that come of it.
 
-    kind: "slow-down" (value: factor on the time), "heading" or "mounting" (value: angle [rad], `what`: the axis),
-    "relax" (value: the new limit, `what`: frame and limit; `NOTHING`, value 0, where no limit need be raised).
-    `plan.ready` says whether it suffices.
+    `value` is the factor on the time of a slow-down; an offset's angle [rad], `what` being the axis; or the new limit,
+    `what` being frame and limit (`NOTHING`, value 0, where none need be raised). `plan.ready` says whether it suffices.
     """
 
-    kind: str
+    kind: RemedyKind
     what: str
     value: float
     time: Array  # (n,) [s]
@@ -118,15 +120,17 @@ def _slowed(trials: _Trials, t: Array, C: Array, rig: Rig, factor: float) -> Rem
     """The flight in `factor` times its time, at its own sample rate (by quaternion spline), planned."""
     slow = t[0] + (t - t[0]) * factor
     if factor == 1.0 or len(t) < 3:
-        return Remedy("slow-down", "time", factor, slow, C, rig, trials.final(slow, C, rig))
+        return Remedy(RemedyKind.SLOW_DOWN, "time", factor, slow, C, rig, trials.final(slow, C, rig))
     again = resample(slow, continuous(quaternion_from_dcm(C)), (len(t) - 1) / float(t[-1] - t[0]))
     attitude = dcm_from_quaternion(again.q)
-    return Remedy("slow-down", "time", factor, again.time, attitude, rig, trials.final(again.time, attitude, rig))
+    return Remedy(
+        RemedyKind.SLOW_DOWN, "time", factor, again.time, attitude, rig, trials.final(again.time, attitude, rig)
+    )
 
 
-def turned(attitude: Array, kind: str, axis: str, angle: float) -> Array:
-    """The flight turned by a constant: "heading": C R, about the reference's up axis; "mounting": R C, a body axis."""
-    if kind == "heading":
+def turned(attitude: Array, kind: RemedyKind, axis: str, angle: float) -> Array:
+    """The flight turned by a constant: its heading about the up axis, C R; its mounting about `axis`, R C."""
+    if kind == RemedyKind.HEADING_OFFSET:
         return np.asarray(attitude @ _elementary(1, angle))
     return np.asarray(_elementary(AXES.index(axis), angle) @ attitude)
 
@@ -140,19 +144,20 @@ def _elementary(axis: int, angle: float) -> Array:
 
 
 def offset(
-    time: ArrayLike, attitude: ArrayLike, rig: Rig, kind: str = "heading", start: ArrayLike | None = None,
-    options: PlanOptions | None = None, progress: Progress | None = None, step: float = math.radians(30.0),
+    time: ArrayLike, attitude: ArrayLike, rig: Rig, kind: RemedyKind = RemedyKind.HEADING_OFFSET,
+    start: ArrayLike | None = None, options: PlanOptions | None = None, progress: Progress | None = None,
+    step: float = math.radians(30.0),
 ) -> Remedy:  # fmt: skip
     """The constant offset that makes the flight feasible with the most margin, of those tried.
 
-    kind: "heading" (the flight turned about the vertical) or "mounting" (the payload turned about one body axis).
+    kind: `HEADING_OFFSET` (the flight turned about the vertical) or `MOUNTING_OFFSET` (the payload about a body axis).
     Offsets every `step` [rad] are tried, then half and a quarter of it around the best. Infeasible where none fits.
     Raises `InputError` for another kind, `CancelledError` from progress.
     """
-    if kind not in ("heading", "mounting"):
-        raise InputError("kind", None, kind, "heading or mounting")
+    if kind not in OFFSETS:
+        raise InputError("kind", None, kind, " or ".join(OFFSETS))
     t, C = np.asarray(time, float), np.asarray(attitude, float)
-    axes = ("yaw",) if kind == "heading" else AXES
+    axes = (UP,) if kind == RemedyKind.HEADING_OFFSET else AXES
     count = max(2, round(2.0 * math.pi / step))
     trials = _Trials(1 + len(axes) * (count - 1) + 4 + 1, progress, options or PlanOptions(), start)
 
@@ -214,7 +219,7 @@ def relax(
     if trials.feasible(t, C, rig).ready:
         made = trials.final(t, C, rig)
         if made.ready:  # else the thinned samples did not show what is wrong
-            return [Remedy("relax", NOTHING, 0.0, t, C, rig, made)]
+            return [Remedy(RemedyKind.RELAX, NOTHING, 0.0, t, C, rig, made)]
     for number, (i, kind) in enumerate(candidates):
         trials.done = 10 * number
 
@@ -234,7 +239,7 @@ def relax(
         value = (wider.position_max, wider.max_rate, wider.max_acceleration)[kind][i]
         made = trials.final(t, C, wider)
         if made.ready:
-            remedies.append(Remedy("relax", f"{FRAMES[i]} {LIMITS[kind]}", float(value), t, C, wider, made))
+            remedies.append(Remedy(RemedyKind.RELAX, f"{FRAMES[i]} {LIMITS[kind]}", float(value), t, C, wider, made))
     return remedies
 
 

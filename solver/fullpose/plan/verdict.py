@@ -9,6 +9,7 @@ from fullpose._typing import Array, Integers
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Blocking
 from fullpose.verify import Violation, attitude_errors, differences, payload_attitudes, verify
+from fullpose.vocabulary import Decision
 
 CHUNK = 1 << 18  # samples looked at together, so that an hour needs no copies of itself
 STENCIL = 4  # samples that a cubic goes through
@@ -23,7 +24,7 @@ class Verdict:
 
     feasible: bool
     blocking: Blocking | None
-    decided_by: str  # "checked", "position", "rate", "acceleration", "start_rate", "three-axis"
+    decided_by: Decision
     grid: float
     statement: str
     between: float  # largest entry of F - C half-way between samples; nan where not looked at

@@ -17,6 +17,7 @@ import numpy as np
 
 from fullpose._jit import inner
 from fullpose._typing import Array
+from fullpose.bounds import EXACT
 from fullpose.errors import MethodError
 from fullpose.kinematics import jacobian, null_vector
 from fullpose.limits import MAX, MIN, WEIGHT, limit_table
@@ -36,7 +37,6 @@ from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import Track
 from fullpose.preview.replan import FIT_WINDOW, Ahead, Replan
 from fullpose.rig import Rig
-from fullpose.solution import EXACT
 from fullpose.step import quadratic_step
 from fullpose.trajectory.nodes import fill_nodes, grid_circle
 

@@ -6,6 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fullpose.attitude import dcm_from_quaternion
+from fullpose.bounds import EXACT
 from fullpose.compare import EXACT_WITHIN, failures
 from fullpose.errors import MethodError
 from fullpose.kinematics import jacobian, null_vector
@@ -14,7 +15,6 @@ from fullpose.methods.alm import AlmOptions, Mode, multiplier_step, multipliers
 from fullpose.methods.state import new_flight
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import SCENARIOS, random_flight
-from fullpose.solution import EXACT
 from fullpose.solve import solve
 from fullpose.step import quadratic_step
 from fullpose.verify import verify

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from fullpose.attitude import dcm_from_quaternion
+from fullpose.bounds import limited_name
 from fullpose.kinematics import jacobian, null_vector
 from fullpose.methods.clamped import LOCKS, METHOD, ClampedOptions, Locks, clamped_step
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import SCENARIOS
-from fullpose.solution import limited_name
 from fullpose.solve import solve
 from fullpose.verify import verify
 

@@ -7,11 +7,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
+from fullpose.bounds import EXACT, limited_name
 from fullpose.errors import MethodError
 from fullpose.methods.exact import ExactOptions
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import SCENARIOS, random_flight
-from fullpose.solution import EXACT, Solution, limited_name
+from fullpose.solution import Solution
 from fullpose.solve import solve
 from fullpose.verify import verify
 

@@ -6,10 +6,10 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from fullpose.attitude import dcm_from_euler
+from fullpose.bounds import EXACT, limited_name
 from fullpose.charts import base_chart, inner_chart
 from fullpose.methods.start_pose import start_pose
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
-from fullpose.solution import EXACT, limited_name
 from fullpose.verify import attitude_errors, payload_attitudes
 
 RIGS = builtin_rigs()

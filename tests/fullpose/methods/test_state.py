@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from fullpose._typing import Array
+from fullpose.bounds import EXACT, limited_code
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
 from fullpose.limits import tolerances
 from fullpose.methods.limited import give_way, goal, null_space_increment, outermost_code, settle
 from fullpose.methods.state import Flight, advance, new_flight
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
-from fullpose.solution import EXACT, limited_code
 from fullpose.verify import payload_attitudes
 
 RIG = builtin_rigs()["vertical-4"]

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
+from fullpose.bounds import EXACT, limited_code, limited_name
 from fullpose.plan import PlanOptions, plan
 from fullpose.plan.active_limits import active_limits
 from fullpose.rig import FRAMES, LIMITS, FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
-from fullpose.solution import EXACT, limited_code, limited_name
 from fullpose.verify import payload_attitudes, verify
 
 DEG = np.pi / 180.0

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
+from fullpose.bounds import EXACT, limited_code
 from fullpose.limits import limit_table
 from fullpose.plan import PlanOptions, plan
 from fullpose.plan.least_error import feasible, follow, from_feasible, least_error
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
-from fullpose.solution import EXACT, limited_code
 from fullpose.verify import attitude_errors, payload_attitudes, verify
 
 DEG = np.pi / 180.0

@@ -9,6 +9,7 @@ from fullpose.plan import plan
 from fullpose.plan.remedies import NOTHING, offset, raised, relax, slow_down, turned
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.verify import verify
+from fullpose.vocabulary import RemedyKind
 
 DEG = np.pi / 180.0
 
@@ -97,7 +98,7 @@ def test_heading_offset_brings_the_flight_into_the_range():
     C = dcm_from_euler(100 * DEG + 40 * DEG * np.sin(TIME), 0.0, 0.0)
     rig = base_alone(400 * DEG, 60 * DEG)
     assert not plan(TIME, C, rig).verdict.feasible
-    remedy = offset(TIME, C, rig, "heading")
+    remedy = offset(TIME, C, rig, RemedyKind.HEADING_OFFSET)
     assert flies(remedy)
     # Yaw 100..140 deg lies best in the middle of +-60.
     assert remedy.value == pytest.approx(-120 * DEG, abs=10 * DEG)
@@ -109,7 +110,7 @@ def test_mounting_offset_turns_the_payload():
     still = FrameLimits(-5 * DEG, 5 * DEG)
     rig = Rig("roll", Geometry.VERTICAL_4, (still, still, still, FrameLimits(-60 * DEG, 60 * DEG)))
     C = dcm_from_euler(0.0, 0.0, 90 * DEG + 20 * DEG * np.sin(TIME))
-    remedy = offset(TIME, C, rig, "mounting", step=45 * DEG)
+    remedy = offset(TIME, C, rig, RemedyKind.MOUNTING_OFFSET, step=45 * DEG)
     assert flies(remedy)
     assert remedy.what == "roll"
     assert remedy.value == pytest.approx(-90 * DEG, abs=23 * DEG)
@@ -117,8 +118,8 @@ def test_mounting_offset_turns_the_payload():
 
 def test_turned_is_what_it_says():
     C = dcm_from_euler(0.3, 0.2, 0.1)
-    assert np.allclose(turned(C, "heading", "yaw", 0.4), dcm_from_euler(0.7, 0.2, 0.1))
-    assert np.allclose(turned(C, "mounting", "roll", 0.4), dcm_from_euler(0.3, 0.2, 0.5))
+    assert np.allclose(turned(C, RemedyKind.HEADING_OFFSET, "yaw", 0.4), dcm_from_euler(0.7, 0.2, 0.1))
+    assert np.allclose(turned(C, RemedyKind.MOUNTING_OFFSET, "roll", 0.4), dcm_from_euler(0.3, 0.2, 0.5))
 
 
 def test_raised_changes_one_limit_of_one_frame():
@@ -145,7 +146,7 @@ def test_progress_counts_to_the_end_and_cancels():
 
 def test_names_that_are_none():
     with pytest.raises(InputError, match="kind"):
-        offset(TIME, YAW, base_alone(1.0), "sideways")
+        offset(TIME, YAW, base_alone(1.0), "sideways")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="frame"):
         relax(TIME, YAW, base_alone(1.0), frame="third")
     with pytest.raises(InputError, match="limit"):

@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from fullpose.attitude import dcm_from_quaternion
+from fullpose.bounds import EXACT
 from fullpose.errors import InputError, MethodError
 from fullpose.kinematics import jacobian
 from fullpose.limits import MAX, MIN, RATE, limit_table
@@ -20,7 +21,6 @@ from fullpose.preview.replan import Replan
 from fullpose.preview.stepper import PreviewStepper, start_nodes
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import DEG, SCENARIOS, random_flight
-from fullpose.solution import EXACT
 from fullpose.solve import solve
 from fullpose.trajectory.beam_search import room
 from fullpose.verify import attitude_errors, payload_attitudes, verify

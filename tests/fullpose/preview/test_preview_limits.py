@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fullpose.attitude import dcm_from_quaternion
+from fullpose.bounds import EXACT, limited_name
 from fullpose.preview.options import PreviewOptions
 from fullpose.rig import FrameLimits, Geometry, Rig
 from fullpose.scenarios import random_flight
-from fullpose.solution import EXACT, limited_name
 from fullpose.solve import solve
 from fullpose.verify import verify
 

@@ -3,14 +3,25 @@
 The surface is in degrees and seconds with the unit in the name; arrays of frames are base, outer, middle, inner.
 """
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from fullpose.rig import Frame, Geometry, Limit
+from fullpose.vocabulary import RemedyKind
+
 CLIENT_NAME = r"^[\w.@:+-]{1,64}$"  # of who commands
 Four = tuple[float, float, float, float]
-FrameName = Literal["base", "outer", "middle", "inner"]
-LimitName = Literal["position", "rate", "acceleration"]
+if TYPE_CHECKING:
+    FrameName = Frame
+    LimitName = Limit
+    GeometryName = Geometry
+    RemedyName = RemedyKind
+else:  # the words where they are used, not a named component of the contract
+    FrameName = Literal[*Frame]
+    LimitName = Literal[*Limit]
+    GeometryName = Literal[*Geometry]
+    RemedyName = Literal[*RemedyKind]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$")]
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 

@@ -5,6 +5,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
+from fullpose.vocabulary import RemedyKind
 from fullpose_server.api.schemas.base import (
     FieldProblem,
     Four,
@@ -12,10 +13,10 @@ from fullpose_server.api.schemas.base import (
     LimitName,
     Name,
     Notice,
+    RemedyName,
     Sha256,
     Wire,
 )
-from fullpose_server.planning.remedy_request import RemedyKind
 from fullpose_server.store.jobs import JobStatus
 
 OptionValue = bool | int | float | str
@@ -157,13 +158,13 @@ class JobErrorOut(Wire):
 class RemedyIn(Wire):
     """What may be changed to make a flight fit; `relax` may be asked of one frame or one kind of limit alone."""
 
-    kind: RemedyKind
+    kind: RemedyName
     frame: FrameName | None = None
     limit: LimitName | None = None
 
     @model_validator(mode="after")
     def _names(self) -> Self:
-        if self.kind != "relax" and (self.frame is not None or self.limit is not None):
+        if self.kind != RemedyKind.RELAX and (self.frame is not None or self.limit is not None):
             raise ValueError(f"{self.kind} has no frame and no limit: they are for relax")
         return self
 
@@ -181,7 +182,7 @@ class RemedyOut(Wire):
     """The remedy that a plan is. What was changed is null until the search has ended."""
 
     of: str = Field(description="The plan that it is a remedy of")
-    kind: RemedyKind
+    kind: RemedyName
     frame: FrameName | None
     limit: LimitName | None
     change: RemedyChange | None

@@ -1,12 +1,8 @@
 """Rigs on the wire."""
 
-from typing import Literal
-
 from pydantic import Field
 
-from fullpose_server.api.schemas.base import Name, Wire
-
-GeometryName = Literal["vertical-4", "horizontal-4", "vertical-3", "horizontal-3"]
+from fullpose_server.api.schemas.base import GeometryName, Name, Wire
 
 
 class FrameOut(Wire):

@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 
+from fullpose.rig import Frame, Geometry, Limit
+from fullpose.vocabulary import RemedyKind
 from fullpose_server.app import create_app
 from fullpose_server.runtime.contract.telemetry import SAMPLE
 from fullpose_server.session.alarms import Severity
@@ -23,6 +25,14 @@ def test_states_and_severities_are_the_sessions(schemas: dict[str, Any]) -> None
     assert schemas["State"]["enum"] == [state.value for state in State]
     assert schemas["Severity"]["enum"] == [severity.value for severity in Severity]
     assert schemas["SessionOut"]["properties"]["state"]["$ref"].endswith("/State")
+
+
+def test_frames_limits_geometries_and_remedies_are_the_librarys(schemas: dict[str, Any]) -> None:
+    blocking, remedy = schemas["BlockingOut"]["properties"], schemas["RemedyIn"]["properties"]
+    assert blocking["frame"]["enum"] == list(Frame)
+    assert blocking["limit"]["enum"] == list(Limit)
+    assert remedy["kind"]["enum"] == list(RemedyKind)
+    assert schemas["RigOut"]["properties"]["geometry"]["enum"] == list(Geometry)
 
 
 def test_every_command_has_a_body(schemas: dict[str, Any]) -> None:

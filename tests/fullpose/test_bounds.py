@@ -2,8 +2,8 @@
 
 import pytest
 
+from fullpose.bounds import EXACT, limited_code, limited_name
 from fullpose.rig import FRAMES, LIMITS
-from fullpose.solution import EXACT, limited_code, limited_name
 
 
 def test_every_mark_names_its_frame_and_limit() -> None:
