@@ -13,10 +13,11 @@ v <= sqrt(2 A R) - A h / 2 where sqrt(2 A R) >= A h, else v <= R / h.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from fullpose._jit import inlined
+from fullpose._jit import inlined, kernel
 from fullpose._typing import Array, Codes
 from fullpose.bounds import CODES_PER_FRAME, limited_code
 from fullpose.rig import Rig
@@ -29,6 +30,21 @@ POSITION_CODE, RATE_CODE, ACCELERATION_CODE = (limited_code(0, limit) for limit 
 INSIDE = 1.0 - 1e-9
 STOP_MARGIN = 1e-10  # [rad] from the end stops, more than a sample's tolerance
 BRAKING = 0.999
+
+
+class Box(NamedTuple):
+    """Where each frame may be at the next sample, and which limit set each bound."""
+
+    lo: Array  # (4,) [rad]
+    hi: Array
+    lo_code: Codes  # (4,) `solution.limited_code`
+    hi_code: Codes
+
+
+@kernel
+def empty_box() -> Box:
+    """A box for `limit_box` to fill."""
+    return Box(np.empty(4), np.empty(4), np.empty(4, np.int16), np.empty(4, np.int16))
 
 
 def limit_table(rig: Rig) -> Array:
@@ -52,10 +68,8 @@ def approach_rate(room: float, deceleration: float, h: float) -> float:
 
 
 @inlined
-def limit_box(
-    table: Array, d: Array, v: Array, h_past: float, h: float, lo: Array, hi: Array, lo_code: Codes, hi_code: Codes
-) -> None:
-    """lo, hi <- where each frame may be after the next interval `h` [s]; the codes name the limit that set the bound.
+def limit_box(table: Array, d: Array, v: Array, h_past: float, h: float, box: Box) -> None:
+    """box <- where each frame may be after the next interval `h` [s].
 
     d (4,) [rad]; v (4,) [rad/s] over the interval `h_past` just past; `h_past` = 0: there is none, any rate may follow.
     A pose kept inside this box sample after sample never meets an empty one (see above).
@@ -88,13 +102,15 @@ def limit_box(
             if v[i] - change > bottom:
                 bottom = v[i] - change
                 bottom_code = code
-        lo[i] = max(d[i] + bottom * h, table[MIN, i])
-        hi[i] = min(d[i] + top * h, table[MAX, i])
-        if lo[i] > hi[i]:
+        lo = max(d[i] + bottom * h, table[MIN, i])
+        hi = min(d[i] + top * h, table[MAX, i])
+        if lo > hi:
             # Only by rounding: a frame that stands on its stop, or has no range.
-            lo[i] = hi[i] = min(max(0.5 * (lo[i] + hi[i]), table[MIN, i]), table[MAX, i])
-        lo_code[i] = bottom_code
-        hi_code[i] = top_code
+            lo = hi = min(max(0.5 * (lo + hi), table[MIN, i]), table[MAX, i])
+        box.lo[i] = lo
+        box.hi[i] = hi
+        box.lo_code[i] = bottom_code
+        box.hi_code[i] = top_code
 
 
 @inlined

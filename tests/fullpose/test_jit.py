@@ -8,17 +8,25 @@ import pytest
 
 import fullpose.kinematics
 from fullpose._jit import kernel
-from fullpose.methods.alm import MULTIPLIERS
-from fullpose.methods.clamped import LOCKS
-from fullpose.methods.state import FLIGHT
 
 SOLVER = Path(fullpose.kinematics.__file__).parent
-# What records hold is their holder's: an array of theirs is a view that nobody need count.
-FIELDS = {*(FLIGHT.names or ()), *(MULTIPLIERS.names or ()), *(LOCKS.names or ())}
-INNER = [
-    pytest.param(node, id=f"{path.stem}.{node.name}")
+NODES = [
+    (path, node)
     for path in sorted(SOLVER.rglob("*.py"))
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+]
+RECORDS = ("NamedTuple", "Protocol", "Options", "GradientProjectionOptions")
+# What records hold is their holder's: an array of theirs is a view that nobody need count.
+FIELDS = {
+    field.target.id
+    for _, node in NODES
+    if isinstance(node, ast.ClassDef) and any(isinstance(base, ast.Name) and base.id in RECORDS for base in node.bases)
+    for field in node.body
+    if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
+}
+INNER = [
+    pytest.param(node, id=f"{path.stem}.{node.name}")
+    for path, node in NODES
     if isinstance(node, ast.FunctionDef)
     and any(isinstance(mark, ast.Name) and mark.id in ("inner", "inlined") for mark in node.decorator_list)
 ]

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from fullpose.bounds import limited_name
-from fullpose.limits import approach_rate, inside, limit_box, limit_table, tolerances
+from fullpose.limits import approach_rate, empty_box, inside, limit_box, limit_table, tolerances
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.verify import verify
 
@@ -17,14 +17,13 @@ def ride(rig: Rig, steps: NDArray[np.float64], pull: NDArray[np.float64]) -> tup
     table = limit_table(rig)
     x = [rig.home.copy()]
     v, past = np.zeros(4), 0.0
-    lo, hi = np.empty(4), np.empty(4)
-    lo_code, hi_code = np.empty(4, np.int16), np.empty(4, np.int16)
+    box = empty_box()
     narrowest = np.inf
     for h, share in zip(steps, pull, strict=True):
-        limit_box(table, x[-1], v, past, h, lo, hi, lo_code, hi_code)
-        width = hi - lo
+        limit_box(table, x[-1], v, past, h, box)
+        width = box.hi - box.lo
         narrowest = min(narrowest, float((width / h)[list(rig.geometry.frames)].min()))
-        following = np.where(share == 1.0, hi, lo + share * width)
+        following = np.where(share == 1.0, box.hi, box.lo + share * width)
         v, past = (following - x[-1]) / h, h
         x.append(following)
     return np.array(x), narrowest
@@ -74,27 +73,25 @@ def test_the_whole_range_is_used() -> None:
 
 def test_codes_name_the_limit_that_sets_the_bound() -> None:
     rig = one_frame(1.0, 2.0, 5.0)
-    lo, hi = np.empty(4), np.empty(4)
-    lo_code, hi_code = np.empty(4, np.int16), np.empty(4, np.int16)
+    box = empty_box()
     d = np.array([0.0, 0.0, 0.9999, -0.9999])
     v = np.array([0.0, 1.9999, 0.0, 0.0])
-    limit_box(limit_table(rig), d, v, 1e-3, 1e-3, lo, hi, lo_code, hi_code)
-    assert limited_name(int(hi_code[0])) == ("base", "acceleration")
-    assert limited_name(int(lo_code[0])) == ("base", "acceleration")
-    assert limited_name(int(hi_code[1])) == ("outer", "rate")
-    assert limited_name(int(lo_code[1])) == ("outer", "acceleration")
+    limit_box(limit_table(rig), d, v, 1e-3, 1e-3, box)
+    assert limited_name(int(box.hi_code[0])) == ("base", "acceleration")
+    assert limited_name(int(box.lo_code[0])) == ("base", "acceleration")
+    assert limited_name(int(box.hi_code[1])) == ("outer", "rate")
+    assert limited_name(int(box.lo_code[1])) == ("outer", "acceleration")
     d[2] = 1.0
-    limit_box(limit_table(rig), d, v, 1e-3, 1e-3, lo, hi, lo_code, hi_code)
-    assert limited_name(int(hi_code[2])) == ("middle", "position")
-    assert 1.0 - 1e-9 < hi[2] < 1.0
+    limit_box(limit_table(rig), d, v, 1e-3, 1e-3, box)
+    assert limited_name(int(box.hi_code[2])) == ("middle", "position")
+    assert 1.0 - 1e-9 < box.hi[2] < 1.0
 
 
 def test_without_limits_the_box_is_all_there_is() -> None:
-    lo, hi = np.empty(4), np.empty(4)
-    codes = np.empty(4, np.int16)
-    limit_box(limit_table(Rig("free", Geometry.VERTICAL_4)), np.zeros(4), np.zeros(4), 0.0, 1e-3, lo, hi, codes, codes)
-    assert np.isneginf(lo).all()
-    assert np.isposinf(hi).all()
+    box = empty_box()
+    limit_box(limit_table(Rig("free", Geometry.VERTICAL_4)), np.zeros(4), np.zeros(4), 0.0, 1e-3, box)
+    assert np.isneginf(box.lo).all()
+    assert np.isposinf(box.hi).all()
 
 
 @given(room=st.floats(0.0, 10.0), deceleration=st.floats(0.1, 100.0), h=st.floats(1e-4, 1.0))

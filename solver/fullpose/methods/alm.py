@@ -6,33 +6,33 @@ here everything is multiplied by it, which keeps r apart from the sample rate. T
 (`fullpose.limits`), so that rate and acceleration limits are obeyed as well as the paper's position limits; the unknown
 is the step s = x - d rather than x, which costs no digits at large angles.
 
-Where the iteration ends at its cap, its last step is the answer, cut off at the box, and its error shows. Only where no
-step inside the box makes the increment, which the closed form tells (`step.quadratic_step`), has the paper's programme
-no solution: there the step is `step.box_least_squares`, which makes the error as small as the limits allow, and the
-sample is marked. Open loop never makes up for what such a sample left behind, so the mark stays until the attitude is
-held again, for most flights to the end.
+Where the iteration (`multipliers`) ends at its cap, its last step is the answer, cut off at the box, and its error
+shows. Only where no step inside the box makes the increment, which the closed form tells (`step.quadratic_step`), has
+the paper's programme no solution: there the step is `least_squares.box_least_squares`, which makes the error as small
+as the limits allow, and the sample is marked. Open loop never makes up for what such a sample left behind, so the mark
+stays until the attitude is held again, for most flights to the end.
 """
 
 import math
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
 
 import numpy as np
 
-from fullpose._jit import inlined, inner
+from fullpose._jit import inner
 from fullpose._typing import Array
 from fullpose.bounds import EXACT
 from fullpose.charts import project_inner
 from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose, rotation_error
-from fullpose.limits import WEIGHT, inside
+from fullpose.limits import inside
 from fullpose.methods.base import StepMethod, Stepper
+from fullpose.methods.block import block_kernel
 from fullpose.methods.limited import (
     Gains,
     LimitedStepper,
     binding_code,
-    block_kernel,
+    closed_form_step,
     finish,
     flight_from,
     goal_from,
@@ -41,10 +41,10 @@ from fullpose.methods.limited import (
     outermost_code,
     shift_box,
 )
-from fullpose.methods.state import Flight
+from fullpose.methods.multipliers import MULTIPLIERS, Multipliers, multiplier_step
+from fullpose.methods.state import Flight, box_ahead
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.step import quadratic_step, solve_symmetric
 
 
 class Mode(StrEnum):
@@ -94,139 +94,6 @@ class AlmOptions(Options):
 
 HELD = math.radians(1e-9)  # in open loop, a sample within this of the attitude has nothing to make up for
 
-MOST_CHANGES = 5  # of the active bounds between two updates of the multipliers
-
-
-class Multipliers(Protocol):
-    """The iteration's constants and its unknowns, as `MULTIPLIERS` lays them out."""
-
-    mode: int  # a `Mode` by its place
-    penalty: float
-    growth: float
-    max_penalty: float
-    residual: float
-    max_iterations: int
-    equality: Array  # (3,) lambda
-    lower: Array  # (4,) mu of the lower bounds
-    upper: Array
-    products: Array  # (4, 5) J^T J and J^T e
-    system: Array  # (4, 5) K and b
-
-
-MULTIPLIERS = np.dtype(
-    (
-        np.record,
-        np.dtype(
-            [
-                ("mode", "i8"), ("penalty", "f8"), ("growth", "f8"), ("max_penalty", "f8"), ("residual", "f8"),
-                ("max_iterations", "i8"), ("equality", "f8", 3), ("lower", "f8", 4), ("upper", "f8", 4),
-                ("products", "f8", (4, 5)), ("system", "f8", (4, 5)),
-            ],
-            align=True,
-        ),
-    )
-)  # fmt: skip
-
-
-@inlined
-def active_bounds(own: Multipliers, r: float, lo: Array, hi: Array, s: Array) -> int:
-    """Base 3, a digit a frame: no bound's term in M counts at s, the lower one's does (1), the upper one's (2)."""
-    active = 0
-    for i in range(3, -1, -1):
-        active *= 3
-        if own.upper[i] + r * (s[i] - hi[i]) > 0.0:
-            active += 2
-        elif own.lower[i] + r * (lo[i] - s[i]) > 0.0:
-            active += 1
-    return active
-
-
-@inlined
-def minimum_of_m(flight: Flight, own: Multipliers, r: float, active: int) -> bool:
-    """step <- the minimum of M at penalty r with the bounds of `active`; false where it has none."""
-    J = flight.J
-    P = own.products
-    K = own.system
-    rest = active
-    for i in range(4):
-        weight = flight.limits[WEIGHT, i]
-        K[i, 4] = weight * flight.increment[i] + r * P[i, 4]
-        for k in range(3):
-            K[i, 4] -= J[k, i] * own.equality[k]
-        for j in range(i + 1):
-            K[i, j] = r * P[i, j]
-        K[i, i] += weight
-        if rest % 3 == 1:
-            K[i, i] += r
-            K[i, 4] += r * flight.lo[i] + own.lower[i]
-        elif rest % 3 == 2:
-            K[i, i] += r
-            K[i, 4] += r * flight.hi[i] - own.upper[i]
-        rest //= 3
-    if not solve_symmetric(K, K[:, 4], 4):
-        return False
-    for i in range(4):
-        flight.step[i] = K[i, 4]
-    return True
-
-
-@inlined
-def update_multipliers(flight: Flight, own: Multipliers, r: float) -> float:
-    """Move lambda and mu up their gradients; returns the largest violation of the constraints and complementarity."""
-    J = flight.J
-    s = flight.step
-    violation = 0.0
-    for k in range(3):
-        h = J[k, 0] * s[0] + J[k, 1] * s[1] + J[k, 2] * s[2] + J[k, 3] * s[3] - flight.e[k]
-        own.equality[k] += r * h
-        violation = max(violation, abs(h))
-    for i in range(4):
-        # Complementarity: a bound is kept, and its multiplier is zero unless it is met.
-        above = s[i] - flight.hi[i]
-        below = flight.lo[i] - s[i]
-        violation = max(violation, abs(max(above, -own.upper[i] / r)), abs(max(below, -own.lower[i] / r)))
-        own.upper[i] = max(0.0, own.upper[i] + r * above)
-        own.lower[i] = max(0.0, own.lower[i] + r * below)
-    return violation
-
-
-@inner
-def multiplier_step(flight: Flight, own: Multipliers) -> int:
-    """step <- the one by the augmented multiplier method; returns the iterations, negative where it has not settled.
-
-    Of the flight J, e, increment and weights are read, and lo, hi, which are bounds of the step here.
-    """
-    J = flight.J
-    e = flight.e
-    s = flight.step
-    r = own.penalty
-    for i in range(3):
-        own.equality[i] = 0.0
-    for i in range(4):
-        own.lower[i] = 0.0
-        own.upper[i] = 0.0
-        s[i] = 0.0
-        own.products[i, 4] = J[0, i] * e[0] + J[1, i] * e[1] + J[2, i] * e[2]
-        for j in range(i + 1):
-            own.products[i, j] = J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j]
-    active = active_bounds(own, r, flight.lo, flight.hi, s)
-    changes = 0
-    for iteration in range(1, own.max_iterations + 1):
-        if not minimum_of_m(flight, own, r, active):
-            return -iteration
-        # Multipliers answer for a minimum of M only where the bounds reckoned with are those that count there.
-        before = active
-        active = active_bounds(own, r, flight.lo, flight.hi, s)
-        if active != before and changes < MOST_CHANGES:
-            changes += 1
-            continue
-        changes = 0
-        if update_multipliers(flight, own, r) <= own.residual:
-            return iteration
-        r = min(r * own.growth, own.max_penalty)
-        active = active_bounds(own, r, flight.lo, flight.hi, s)
-    return -int(own.max_iterations)
-
 
 @inner
 def reaches(J: Array, s: Array, e: Array, residual: float) -> bool:
@@ -247,10 +114,9 @@ def possible(flight: Flight, manipulability: float, residual: float) -> bool:
     nowhere = flight.damping
     for i in range(4):
         nowhere[i] = 0.0
-    return quadratic_step(
-        flight.J, flight.null, manipulability, flight.limits[WEIGHT], nowhere, flight.increment, flight.e,
-        flight.lo, flight.hi, flight.tolerance, flight.next,
-    ) and reaches(flight.J, flight.next, flight.e, residual)  # fmt: skip
+    return closed_form_step(flight, manipulability, nowhere, flight.next) and reaches(
+        flight.J, flight.next, flight.e, residual
+    )
 
 
 @inner
@@ -279,8 +145,9 @@ def least_error_step(flight: Flight, own: Multipliers, manipulability: float) ->
 
 @inner
 def alm_step(flight: Flight, parameters: Array, C: Array) -> tuple[int, int]:
-    """See `limited.propose`; parameters: (1,) `MULTIPLIERS`."""
+    """See `block.propose`; parameters: (1,) `MULTIPLIERS`."""
     own: Multipliers = parameters[0]
+    box_ahead(flight)
     null_space_increment(flight)
     manipulability = four_axis_pose(flight.horizontal, flight.pose, flight.F, flight.J, flight.null)
     if own.mode != OPEN_LOOP:

@@ -26,13 +26,13 @@ from fullpose._jit import inner
 from fullpose._typing import Array, Flags
 from fullpose.bounds import EXACT
 from fullpose.kinematics import jacobian, null_vector, payload_attitude, rotation_error
-from fullpose.limits import WEIGHT
+from fullpose.least_squares import DAMPED_BELOW, solve_symmetric, squared_damping
 from fullpose.methods.base import StepMethod, Stepper
-from fullpose.methods.limited import Gains, LimitedStepper, binding_code, block_kernel, flight_from, goal, settle
-from fullpose.methods.state import Flight
+from fullpose.methods.block import block_kernel
+from fullpose.methods.limited import Gains, LimitedStepper, binding_code, flight_from, goal, settle
+from fullpose.methods.state import Flight, box_ahead
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.step import DAMPED_BELOW, solve_symmetric, squared_damping
 
 HELD = math.radians(1e-9)  # a sample within this of the attitude is not limited; nor one within the tolerance
 LONGEST = 1.0  # [rad] a frame in one iteration; longer steps are damped, then shortened
@@ -195,7 +195,7 @@ def at_pole(J: Array, n: Array, locks: Locks) -> bool:
 def iterate(flight: Flight, locks: Locks) -> int:
     """next += one clamped step toward the goal, e the error now; returns the first bound locked, or 0."""
     x = flight.next
-    weight = flight.limits[WEIGHT]
+    weight = flight.weight
     jacobian(flight.axes, x, flight.J)
     for i in range(4):
         locks.lo[i] = flight.lo[i] - x[i]
@@ -230,8 +230,9 @@ def settle_at_pole(flight: Flight) -> bool:
 
 @inner
 def clamped_sample(flight: Flight, parameters: Array, C: Array) -> tuple[int, int]:
-    """See `limited.propose`; parameters: (1,) `LOCKS`."""
+    """See `block.propose`; parameters: (1,) `LOCKS`."""
     locks: Locks = parameters[0]
+    box_ahead(flight)
     x = flight.next
     for i in range(4):
         x[i] = flight.pose[i]

@@ -20,25 +20,23 @@ are not looked at: the method claims none.
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from fullpose._jit import kernel
-from fullpose._typing import Array, Counts, Integers
+from fullpose._jit import inner
+from fullpose._typing import Array
+from fullpose.bounds import EXACT
 from fullpose.charts import base_chart, nearest
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
+from fullpose.least_squares import solve_symmetric
+from fullpose.limits import WEIGHT
 from fullpose.methods.base import StepMethod, Stepper
-from fullpose.methods.unlimited import (
-    LAST_STEP,
-    SequenceStepper,
-    exact_start,
-    first_sample,
-    keep_sample,
-    require_fourth_axis,
-)
+from fullpose.methods.block import BlockStepper, block_kernel, record_of
+from fullpose.methods.state import Flight
+from fullpose.methods.unlimited import open_flight
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.step import solve_symmetric
 
 HALF_TURN = 0.5 * math.pi
 NEAREST = 1e-3  # [rad] the distance to the limit is no smaller in H: on the limit and beyond it
@@ -61,7 +59,7 @@ class DwlnOptions(Options):
     exact: bool = True
 
 
-@kernel
+@inner
 def smallest_singular_value(J: Array) -> float:
     """sigma_min of J (3, 4), from the eigenvalues of J J^T by the trigonometric formula (Smith 1961).
 
@@ -94,7 +92,7 @@ def smallest_singular_value(J: Array) -> float:
     return math.sqrt(max(0.0, lowest))
 
 
-@kernel
+@inner
 def limit_gradient(d3: float) -> float:
     """|dH/dd3| for the range (-90, 90) deg; d3 is taken within half a turn of zero."""
     d3 = nearest(d3, 0.0)
@@ -104,29 +102,33 @@ def limit_gradient(d3: float) -> float:
     return abs(math.pi * math.pi * 2.0 * d3 / (4.0 * high * high * low * low))
 
 
-@kernel
-def dwln_weights(rig_weight: Array, parameters: Array, x: Array, moving: float, w: Array) -> None:
-    """w <- the weights at x; `moving` is the last change of d3. x, w, rig_weight (4,); parameters: K, A, B1, B2, ..."""
+@inner
+def dwln_weights(flight: Flight, own: DwlnOptions, moving: float) -> None:
+    """weight <- the weights at the pose `next`; `moving`: the last change of d3, or one of its sign."""
+    x = flight.next
+    rig = flight.limits[WEIGHT]
     gradient = limit_gradient(x[2])
-    s2 = math.sin(x[1]) / parameters[2]
-    c3 = math.cos(x[2]) / parameters[3]
-    w[0] = rig_weight[0] * parameters[0] / (1.0 + gradient)
-    w[1] = rig_weight[1] * (1.0 + parameters[1] * math.exp(-s2 * s2 - c3 * c3))
-    w[2] = rig_weight[2] * (1.0 + gradient if moving * nearest(x[2], 0.0) > 0.0 else 1.0)
-    w[3] = rig_weight[3]
+    s2 = math.sin(x[1]) / own.outer_width
+    c3 = math.cos(x[2]) / own.middle_width
+    flight.weight[0] = rig[0] * own.base_weight / (1.0 + gradient)
+    flight.weight[1] = rig[1] * (1.0 + own.outer_gain * math.exp(-s2 * s2 - c3 * c3))
+    flight.weight[2] = rig[2] * (1.0 + gradient if moving * nearest(x[2], 0.0) > 0.0 else 1.0)
 
 
-@kernel
-def damped_step(J: Array, w: Array, e: Array, damping: float, A: Array, p: Array) -> None:
-    """p <- W^-1 J^T (J W^-1 J^T + s^2 I)^-1 e, s^2 at least `LEAST_DAMPING` of the trace, shortened to `LONGEST`.
+@inner
+def damped_step(flight: Flight, damping: float) -> None:
+    """step <- W^-1 J^T (J W^-1 J^T + s^2 I)^-1 e, s^2 at least `LEAST_DAMPING` of the trace, shortened to `LONGEST`.
 
-    J (3, 4); w, p (4,); e (3,); damping: s^2; A (3, 4) is room to work in.
+    damping: s^2.
     """
-    y = A[:, 3]
+    J = flight.J
+    p = flight.step
+    A = flight.system
+    y = A[:, 4]
     for i in range(4):
-        p[i] = 1.0 / w[i]
+        p[i] = 1.0 / flight.weight[i]
     for r in range(3):
-        y[r] = e[r]
+        y[r] = flight.e[r]
         for c in range(r + 1):
             total = 0.0
             for i in range(4):
@@ -145,76 +147,49 @@ def damped_step(J: Array, w: Array, e: Array, damping: float, A: Array, p: Array
             p[i] *= LONGEST / longest
 
 
-@kernel
-def dwln_block(
-    horizontal: bool,
-    axes: Integers,
-    weight: Array,
-    parameters: Array,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    angles: Array,
-    iterations: Counts,
-) -> None:
-    """See `sequence.SequenceKernel`; parameters: K, A, B1, B2, sigma_0, s_max, tolerance, cap, exact."""
-    F = np.empty((3, 3))
-    J = np.empty((3, 4))
-    e = np.empty(3)
-    p = np.empty(4)
-    w = np.empty(4)
-    A = np.empty((3, 4))
-    sigma_0, s_max = parameters[4], parameters[5]
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        x = angles[k]
-        if first_sample(time[k], C, state, x):
-            continue
+@inner
+def dwln_step(flight: Flight, parameters: Any, C: Array) -> tuple[int, int]:
+    """See `block.propose`; parameters: (1,) the options."""
+    own: DwlnOptions = parameters[0]
+    x = flight.next
+    for i in range(4):
+        x[i] = flight.pose[i]
+    moving = flight.rate[2]
+    count = 0
+    for again in range(own.max_iterations):
+        payload_attitude(flight.axes, x, flight.F)
+        if rotation_error(C, flight.F, flight.e) < own.tolerance and again > 0:
+            break
+        jacobian(flight.axes, x, flight.J)
+        sigma = smallest_singular_value(flight.J)
+        damping = 0.0
+        if sigma < own.damping_below:
+            damping = own.max_damping * own.max_damping * (1.0 - (sigma / own.damping_below) ** 2)
+        dwln_weights(flight, own, moving)
+        damped_step(flight, damping)
         for i in range(4):
-            x[i] = state[i]
-        moving = state[LAST_STEP + 2]
-        for again in range(int(parameters[7])):
-            payload_attitude(axes, x, F)
-            if rotation_error(C, F, e) < parameters[6] and again > 0:
-                break
-            jacobian(axes, x, J)
-            sigma = smallest_singular_value(J)
-            damping = 0.0
-            if sigma < sigma_0:
-                damping = s_max * s_max * (1.0 - (sigma / sigma_0) ** 2)
-            dwln_weights(weight, parameters, x, moving, w)
-            damped_step(J, w, e, damping, A, p)
-            for i in range(4):
-                x[i] += p[i]
-            moving = p[2]
-            iterations[k] += 1
-        if parameters[8] != 0.0:
-            base_chart(horizontal, C, x[0], 1.0, p)
-            for i in range(1, 4):
-                x[i] = nearest(p[i], x[i])
-        keep_sample(time[k], C, x, state)
+            x[i] += flight.step[i]
+        moving = flight.step[2]
+        count += 1
+    if own.exact:
+        base_chart(flight.horizontal, C, x[0], 1.0, flight.guess)
+        for i in range(1, 4):
+            x[i] = nearest(flight.guess[i], x[i])
+    return count, EXACT
+
+
+dwln_block = block_kernel("dwln_block", dwln_step)
 
 
 def _stepper(rig: Rig, options: DwlnOptions, start: Array | None, attitude: Array) -> Stepper:
-    require_fourth_axis("dwln", rig)
-    pose = exact_start(rig, attitude, start)
+    flight = open_flight("dwln", rig, start, attitude)
+    pose = flight.pose
     if math.cos(pose[2]) < 0.0:
         # The method lives on the branch cos d3 > 0: the same base angle, the other solution of the frames inside.
         other = np.empty(4)
         base_chart(rig.geometry.horizontal, np.ascontiguousarray(attitude), pose[0], 1.0, other)
-        pose = np.array([nearest(other[i], pose[i]) for i in range(4)])
-    parameters = [
-        options.base_weight,
-        options.outer_gain,
-        options.outer_width,
-        options.middle_width,
-        options.damping_below,
-        options.max_damping,
-        options.tolerance,
-        float(options.max_iterations),
-        float(options.exact),
-    ]
-    return SequenceStepper(rig, dwln_block, parameters, pose)
+        pose[:] = [nearest(other[i], pose[i]) for i in range(4)]
+    return BlockStepper(dwln_block, record_of(options), flight)
 
 
 METHOD = StepMethod(

@@ -7,21 +7,20 @@ import numpy as np
 from fullpose._jit import inner
 from fullpose._typing import Array
 from fullpose.kinematics import four_axis_pose
-from fullpose.limits import WEIGHT
 from fullpose.methods.base import StepMethod, Stepper
+from fullpose.methods.block import block_kernel
 from fullpose.methods.limited import (
     Gains,
     LimitedStepper,
-    block_kernel,
+    closed_form_step,
     finish,
     flight_from,
     goal_from,
     null_space_increment,
 )
-from fullpose.methods.state import Flight
+from fullpose.methods.state import Flight, box_ahead
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.step import quadratic_step
 
 
 @dataclass(frozen=True)
@@ -44,14 +43,12 @@ class ExactOptions(Options):
 
 @inner
 def exact_step(flight: Flight, _parameters: Array, C: Array) -> tuple[int, int]:
-    """See `limited.propose`."""
+    """See `block.propose`."""
+    box_ahead(flight)
     null_space_increment(flight)
     manipulability = four_axis_pose(flight.horizontal, flight.pose, flight.F, flight.J, flight.null)
     goal_from(flight, C)
-    quadratic_step(
-        flight.J, flight.null, manipulability, flight.limits[WEIGHT], flight.pose, flight.increment, flight.e,
-        flight.lo, flight.hi, flight.tolerance, flight.guess,
-    )  # fmt: skip
+    closed_form_step(flight, manipulability, flight.pose, flight.guess)
     return finish(flight)
 
 

@@ -4,25 +4,20 @@ Source: Zu 2005. The frame that is held is the base or the inner one, whichever 
 (mathematics, section 3). The attitude is exact; the limits are those of `gradient_projection`, avoided but not kept.
 """
 
-import numpy as np
+from typing import Any
 
-from fullpose._jit import kernel
-from fullpose._typing import Array, Counts, Integers
+from fullpose._jit import inner
+from fullpose._typing import Array
+from fullpose.bounds import EXACT
 from fullpose.charts import project
 from fullpose.methods.base import StepMethod, Stepper
+from fullpose.methods.block import BlockStepper, block_kernel, record_of
 from fullpose.methods.gradient_projection import (
     GradientProjectionOptions,
-    gradient_parameters,
     gradient_projection_step,
+    unweighted_flight,
 )
-from fullpose.methods.unlimited import (
-    CLOCK,
-    SequenceStepper,
-    exact_start,
-    first_sample,
-    keep_sample,
-    require_fourth_axis,
-)
+from fullpose.methods.state import Flight
 from fullpose.rig import Rig
 
 
@@ -30,37 +25,20 @@ class FixedJointOptions(GradientProjectionOptions):
     """Those of `gradient_projection`."""
 
 
-@kernel
-def fixed_joint_block(
-    horizontal: bool,
-    axes: Integers,
-    _weight: Array,
-    parameters: Array,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    angles: Array,
-    iterations: Counts,
-) -> None:
-    """See `sequence.SequenceKernel`; parameters as in `gradient_projection_step`."""
-    F = np.empty((3, 3))
-    J = np.empty((3, 4))
-    n = np.empty(4)
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        if first_sample(time[k], C, state, angles[k]):
-            continue
-        h = time[k] - state[CLOCK]
-        gradient_projection_step(axes, parameters, state[0:4], C, h, F, J, n, angles[k])
-        project(horizontal, C, angles[k], angles[k])
-        iterations[k] = 1
-        keep_sample(time[k], C, angles[k], state)
+@inner
+def fixed_joint_step(flight: Flight, parameters: Any, C: Array) -> tuple[int, int]:
+    """See `block.propose`; parameters: (1,) the options."""
+    gradient_projection_step(flight, parameters, C)
+    project(flight.horizontal, C, flight.next, flight.next)
+    return 1, EXACT
+
+
+fixed_joint_block = block_kernel("fixed_joint_block", fixed_joint_step)
 
 
 def _stepper(rig: Rig, options: FixedJointOptions, start: Array | None, attitude: Array) -> Stepper:
-    require_fourth_axis("fixed_joint", rig)
-    parameters = gradient_parameters(rig, options)
-    return SequenceStepper(rig, fixed_joint_block, parameters, exact_start(rig, attitude, start))
+    flight = unweighted_flight("fixed_joint", rig, start, attitude)
+    return BlockStepper(fixed_joint_block, record_of(options), flight)
 
 
 METHOD = StepMethod(

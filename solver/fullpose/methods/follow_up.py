@@ -12,31 +12,22 @@ options'. The paper's servo is not at hand. For the other frames nothing is prom
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any, Protocol
 
-import numpy as np
-
-from fullpose._jit import kernel
-from fullpose._typing import Array, Counts, Integers
+from fullpose._jit import inner
+from fullpose._typing import Array
 from fullpose.bounds import EXACT
 from fullpose.charts import base_chart, nearest
 from fullpose.errors import MethodError
-from fullpose.limits import ACCELERATION, RATE, approach_rate, limit_box, limit_table
+from fullpose.limits import ACCELERATION, RATE, Box, approach_rate, limit_box
 from fullpose.methods.base import StepMethod, Stepper
-from fullpose.methods.start_pose import start_pose
-from fullpose.methods.unlimited import (
-    CLOCK,
-    MEMORY,
-    SequenceStepper,
-    first_sample,
-    keep_sample,
-    open_rig,
-    require_fourth_axis,
-)
+from fullpose.methods.block import BlockStepper, block_kernel, record_of
+from fullpose.methods.start_pose import require_fourth_axis, start_pose
+from fullpose.methods.state import MOVING, Flight, new_flight
+from fullpose.methods.unlimited import open_rig
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
 
-# The method's memory in the state: the base's rate, whether it is out of the way, where to, and the last interval.
-BASE_RATE, ASIDE, ASIDE_AT, PAST = MEMORY, MEMORY + 1, MEMORY + 2, MEMORY + 3
 HALF_PI = 0.5 * math.pi
 
 
@@ -57,71 +48,62 @@ class FollowUpOptions(Options):
             raise MethodError(f"option back_beyond = {self.back_beyond!r}: expected {expected}")
 
 
-@kernel
-def base_target(horizontal: bool, C: Array, base: float, parameters: Array, state: Array) -> float:
+class FollowUp(Protocol):
+    """The options, and what the method keeps for itself, as `_stepper` lays them out."""
+
+    aside_within: float
+    back_beyond: float
+    bandwidth: float
+    aside: bool  # whether the base is out of the way
+    aside_at: float  # [rad] where to
+
+
+@inner
+def base_target(flight: Flight, own: FollowUp, C: Array) -> float:
     """Where the base should be [rad] for the attitude C; keeps the method's memory."""
+    base = flight.pose[0]
     # The nose in the vertical rig's reference axes: along x, and along z, the plane that the base turns in.
     along = C[0, 0]
-    across = -C[0, 1] if horizontal else C[0, 2]
+    across = -C[0, 1] if flight.horizontal else C[0, 2]
     level = math.hypot(along, across)
-    if state[ASIDE] == 0.0 and level < math.sin(parameters[0]):
-        state[ASIDE] = 1.0
-        state[ASIDE_AT] = base + HALF_PI
-    elif state[ASIDE] != 0.0 and level > math.sin(parameters[1]):
-        state[ASIDE] = 0.0
-    if state[ASIDE] != 0.0:
-        return float(state[ASIDE_AT])
+    if not own.aside and level < math.sin(own.aside_within):
+        own.aside = True
+        own.aside_at = base + HALF_PI
+    elif own.aside and level > math.sin(own.back_beyond):
+        own.aside = False
+    if own.aside:
+        return float(own.aside_at)
     # Middle at zero with the outer angle on this side of the pole or on the other: the base angles half a turn apart.
     ahead = nearest(math.atan2(-across, along), base)
     behind = nearest(math.atan2(across, -along), base)
     return float(ahead if abs(ahead - base) <= abs(behind - base) else behind)
 
 
-@kernel
-def follow_up_block(
-    horizontal: bool,
-    _axes: Integers,
-    _weight: Array,
-    parameters: Array,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    angles: Array,
-    iterations: Counts,
-) -> None:
-    """See `sequence.SequenceKernel`; parameters: aside, back, bandwidth, then a `limit_table`, row by row."""
-    bandwidth = parameters[2]
-    table = parameters[3:].reshape(-1, 4)
-    p = np.empty(4)
-    v = np.zeros(4)  # the base's alone is known, and asked for
-    lo = np.empty(4)
-    hi = np.empty(4)
-    lo_code = np.empty(4, np.int16)
-    hi_code = np.empty(4, np.int16)
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        x = angles[k]
-        if first_sample(time[k], C, state, x):
-            continue
-        h = time[k] - state[CLOCK]
-        past = state[PAST] if state[PAST] > 0.0 else h  # the base stood at the start
-        v[0] = state[BASE_RATE]
-        limit_box(table, state[0:4], v, past, h, lo, hi, lo_code, hi_code)
-        gap = base_target(horizontal, C, state[0], parameters, state) - state[0]
-        # Critically damped, and never faster than half its deceleration can brake within the gap. A step longer than
-        # the servo's own time takes on the wanted rate at once: more of it would overshoot, and swing ever wider.
-        wanted = min(0.5 * bandwidth * abs(gap), approach_rate(abs(gap), 0.5 * table[ACCELERATION, 0], h))
-        rate = v[0] + min(2.0 * bandwidth * h, 1.0) * (math.copysign(wanted, gap) - v[0])
-        base = min(max(state[0] + rate * h, lo[0]), hi[0])
-        state[BASE_RATE] = (base - state[0]) / h
-        state[PAST] = h
-        base_chart(horizontal, C, base, 1.0 if math.cos(state[2]) >= 0.0 else -1.0, p)
-        x[0] = base
-        for i in range(1, 4):
-            # Nearest to the last angle, not to where its last step would lead: that may be a half turn (see above).
-            x[i] = nearest(p[i], state[i])
-        iterations[k] = 1
-        keep_sample(time[k], C, x, state)
+@inner
+def follow_up_step(flight: Flight, parameters: Any, C: Array) -> tuple[int, int]:
+    """See `block.propose`; parameters: (1,) `FollowUp`."""
+    own: FollowUp = parameters[0]
+    h = flight.ahead
+    past = flight.past if flight.phase == MOVING else h  # the base stood at the start
+    box = Box(flight.lo, flight.hi, flight.lo_code, flight.hi_code)
+    limit_box(flight.limits, flight.pose, flight.rate, past, h, box)  # the base's alone is asked for
+    gap = base_target(flight, own, C) - flight.pose[0]
+    # Critically damped, and never faster than half its deceleration can brake within the gap. A step longer than
+    # the servo's own time takes on the wanted rate at once: more of it would overshoot, and swing ever wider.
+    braking = approach_rate(abs(gap), 0.5 * flight.limits[ACCELERATION, 0], h)
+    wanted = min(0.5 * own.bandwidth * abs(gap), braking)
+    rate = flight.rate[0] + min(2.0 * own.bandwidth * h, 1.0) * (math.copysign(wanted, gap) - flight.rate[0])
+    x = flight.next
+    x[0] = min(max(flight.pose[0] + rate * h, flight.lo[0]), flight.hi[0])
+    branch = 1.0 if math.cos(flight.pose[2]) >= 0.0 else -1.0
+    base_chart(flight.horizontal, C, x[0], branch, flight.guess)
+    for i in range(1, 4):
+        # Nearest to the last angle, not to where its last step would lead: that may be a half turn (see above).
+        x[i] = nearest(flight.guess[i], flight.pose[i])
+    return 1, EXACT
+
+
+follow_up_block = block_kernel("follow_up_block", follow_up_step)
 
 
 def _start(rig: Rig, attitude: Array, near: Array | None) -> Array:
@@ -138,11 +120,10 @@ def _start(rig: Rig, attitude: Array, near: Array | None) -> Array:
 
 def _stepper(rig: Rig, options: FollowUpOptions, start: Array | None, attitude: Array) -> Stepper:
     require_fourth_axis("follow_up", rig)
-    table = limit_table(rig)
-    table[RATE, 0] = min(table[RATE, 0], options.max_rate)
-    table[ACCELERATION, 0] = min(table[ACCELERATION, 0], options.max_acceleration)
-    parameters = [options.aside_within, options.back_beyond, options.bandwidth, *table.ravel().tolist()]
-    return SequenceStepper(rig, follow_up_block, parameters, _start(rig, attitude, start))
+    flight = new_flight(rig, _start(rig, attitude, start), EXACT, attitude)
+    flight.limits[RATE, 0] = min(flight.limits[RATE, 0], options.max_rate)
+    flight.limits[ACCELERATION, 0] = min(flight.limits[ACCELERATION, 0], options.max_acceleration)
+    return BlockStepper(follow_up_block, record_of(options, (("aside", "?"), ("aside_at", "f8"))), flight)
 
 
 METHOD = StepMethod(

@@ -12,24 +12,20 @@ shrink. H repels from a limit; it does not keep the frame inside it, so the meth
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from fullpose._jit import kernel
-from fullpose._typing import Array, Counts, Integers
-from fullpose.kinematics import jacobian, null_vector, payload_attitude, rotation_error
+from fullpose._jit import inner
+from fullpose._typing import Array
+from fullpose.bounds import EXACT
+from fullpose.limits import MAX, MIN
 from fullpose.methods.base import StepMethod, Stepper
-from fullpose.methods.unlimited import (
-    CLOCK,
-    SequenceStepper,
-    exact_start,
-    first_sample,
-    keep_sample,
-    require_fourth_axis,
-)
+from fullpose.methods.block import BlockStepper, block_kernel, record_of
+from fullpose.methods.state import Flight
+from fullpose.methods.unlimited import increment_to, least_norm_step, open_flight
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.step import least_norm, squared_damping
 
 NEAREST = 1e-6  # 1 - u^2 is no smaller in the gradient, on the limit and beyond it
 
@@ -43,83 +39,55 @@ class GradientProjectionOptions(Options):
     max_rate: float = ranged(1.0, 0.0, 1e3)
 
 
-@kernel
-def ascent(low: Array, high: Array, d: Array, limits: float, singularity: float, max_rate: float, g: Array) -> None:
-    """g <- k grad H at d [rad/s], no longer than max_rate. low, high, d, g (4,)."""
+@inner
+def ascent(flight: Flight, own: GradientProjectionOptions) -> None:
+    """increment <- k grad H at the pose, no longer than max_rate, times the interval ahead [rad]."""
+    d = flight.pose
+    g = flight.increment
     for i in range(4):
         g[i] = 0.0
-        if high[i] < np.inf and high[i] > low[i]:
-            half = 0.5 * (high[i] - low[i])
-            u = (d[i] - 0.5 * (high[i] + low[i])) / half
+        low = flight.limits[MIN, i]
+        high = flight.limits[MAX, i]
+        if high < np.inf and high > low:
+            half = 0.5 * (high - low)
+            u = (d[i] - 0.5 * (high + low)) / half
             room = max(1.0 - u * u, NEAREST)
-            g[i] = -limits * 2.0 * u / (room * room * half)
-    g[1] += singularity * math.sin(2.0 * d[1])
-    g[2] -= singularity * math.sin(2.0 * d[2])
+            g[i] = -own.limits * 2.0 * u / (room * room * half)
+    g[1] += own.singularity * math.sin(2.0 * d[1])
+    g[2] -= own.singularity * math.sin(2.0 * d[2])
     length = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2] + g[3] * g[3])
-    if length > max_rate:
+    if length > own.max_rate:
         for i in range(4):
-            g[i] *= max_rate / length
+            g[i] *= own.max_rate / length
+    for i in range(4):
+        g[i] *= flight.ahead
 
 
-@kernel
-def gradient_projection_step(
-    axes: Integers, parameters: Array, d: Array, C: Array, h: float, F: Array, J: Array, n: Array, x: Array
-) -> None:
-    """x <- d + J^+ e + (I - J^+ J) g h for the target C. parameters: limits, singularity, max_rate, low (4), high (4).
+@inner
+def gradient_projection_step(flight: Flight, parameters: Any, C: Array) -> tuple[int, int]:
+    """See `block.propose`; parameters: (1,) the options.
 
-    d, n, x (4,); C, F (3, 3); J (3, 4); h [s].
+    J^+ e + (I - J^+ J) g = g + J^+ (e - J g): the step of least norm from g.
     """
-    e = np.empty(3)
-    g = np.empty(4)
-    unit = np.ones(4)
-    payload_attitude(axes, d, F)
-    rotation_error(C, F, e)
-    jacobian(axes, d, J)
-    ascent(parameters[3:7], parameters[7:11], d, parameters[0], parameters[1], parameters[2], g)
-    for i in range(4):
-        g[i] *= h
-    # J^+ e + (I - J^+ J) g = g + J^+ (e - J g)
-    least_norm(J, unit, g, e, squared_damping(null_vector(J, n)), x)
-    for i in range(4):
-        x[i] += d[i]
+    increment_to(flight, C)
+    ascent(flight, parameters[0])
+    least_norm_step(flight)
+    return 1, EXACT
 
 
-@kernel
-def gradient_projection_block(
-    _horizontal: bool,
-    axes: Integers,
-    _weight: Array,
-    parameters: Array,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    angles: Array,
-    iterations: Counts,
-) -> None:
-    """See `sequence.SequenceKernel`; parameters as in `gradient_projection_step`."""
-    F = np.empty((3, 3))
-    J = np.empty((3, 4))
-    n = np.empty(4)
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        if first_sample(time[k], C, state, angles[k]):
-            continue
-        h = time[k] - state[CLOCK]
-        gradient_projection_step(axes, parameters, state[0:4], C, h, F, J, n, angles[k])
-        iterations[k] = 1
-        keep_sample(time[k], C, angles[k], state)
+gradient_projection_block = block_kernel("gradient_projection_block", gradient_projection_step)
 
 
-def gradient_parameters(rig: Rig, options: GradientProjectionOptions) -> list[float]:
-    """What `gradient_projection_step` reads."""
-    gains = [options.limits, options.singularity, options.max_rate]
-    return [*gains, *rig.position_min.tolist(), *rig.position_max.tolist()]
+def unweighted_flight(name: str, rig: Rig, start: Array | None, attitude: Array) -> Flight:
+    """`unlimited.open_flight` for the plain pseudo-inverse: all weights one."""
+    flight = open_flight(name, rig, start, attitude)
+    flight.weight[:] = 1.0
+    return flight
 
 
 def _stepper(rig: Rig, options: GradientProjectionOptions, start: Array | None, attitude: Array) -> Stepper:
-    require_fourth_axis("gradient_projection", rig)
-    parameters = gradient_parameters(rig, options)
-    return SequenceStepper(rig, gradient_projection_block, parameters, exact_start(rig, attitude, start))
+    flight = unweighted_flight("gradient_projection", rig, start, attitude)
+    return BlockStepper(gradient_projection_block, record_of(options), flight)
 
 
 METHOD = StepMethod(

@@ -1,4 +1,4 @@
-"""What the methods that keep limits share: their one block loop, the exact pose inside the box, recovery, the stepper.
+"""What the methods that keep limits share: the exact pose inside the box, recovery, the stepper.
 
 A method proposes a pose from the linearised programme; `settle` puts it on the self-motion curve of the target and
 slides it along the curve until it lies inside the box, so that the sample is exact and inside every limit, or says
@@ -10,31 +10,26 @@ stop: along the rate from which a set share of the smallest frame acceleration s
 """
 
 import math
-from collections.abc import Callable
-from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from fullpose._jit import inlined, inner, kernel
-from fullpose._typing import Array, Codes, Counts
+from fullpose._jit import inlined, inner
+from fullpose._typing import Array
 from fullpose.bounds import EXACT
 from fullpose.charts import project
-from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose, payload_attitude, rotate_back, rotation_error, self_motion
-from fullpose.limits import ACCELERATION, HOME, MAX, MIN, WEIGHT, approach_rate, inside
-from fullpose.methods.base import Block
-from fullpose.methods.start_pose import start_pose
-from fullpose.methods.state import FLIGHT, FRESH, Flight, advance, hold_position, new_flight, prepare
+from fullpose.least_squares import LeastSquares, box_least_squares, squared_damping
+from fullpose.limits import ACCELERATION, HOME, MAX, MIN, approach_rate, inside
+from fullpose.methods.block import BlockKernel, BlockStepper
+from fullpose.methods.start_pose import require_fourth_axis, start_pose
+from fullpose.methods.state import Flight, hold_position, new_flight
 from fullpose.rig import Rig
-from fullpose.step import box_least_squares, clamp, null_interval, squared_damping
+from fullpose.step import Programme, clamp, null_interval, quadratic_step
 
 SLIDES = 8  # along the curve to the box; two or three do it, unless there is no way
 ALONG = 1e-2  # [rad] a slide this long is worth another: what it leaves is of third order
 SHIFT = 1e-7  # damping of the least squares relative to the Jacobian's squares: picks one of many minima
-
-# (flights (1,), the method's parameters, time (m,) [s], attitude (m, 3, 3), angles (m, 4) [rad], codes and iterations)
-BlockKernel = Callable[[Any, Any, Array, Array, Array, Codes, Counts], None]
 
 
 class Gains(NamedTuple):
@@ -109,6 +104,21 @@ def goal(flight: Flight, C: Array) -> None:
     goal_from(flight, C)
 
 
+@inlined
+def closed_form_step(flight: Flight, manipulability: float, d: Array, x: Array) -> bool:
+    """x (4,) <- `quadratic_step` from d (4,) for the increment e: whether it satisfies the programme.
+
+    Where lo and hi are bounds of the step, d is zero and x the step.
+    """
+    return quadratic_step(
+        Programme(
+            flight.J, flight.null, manipulability, flight.weight, d, flight.increment, flight.e,
+            flight.lo, flight.hi, flight.tolerance,
+        ),
+        x,
+    )  # fmt: skip
+
+
 @inner
 def settle(flight: Flight) -> int:
     """next <- the exact pose for the goal inside the box nearest to pose + increment (weighted), from the guess.
@@ -123,7 +133,7 @@ def settle(flight: Flight) -> int:
         along = 0.0
         norm = 0.0
         for i in range(4):
-            weight = flight.limits[WEIGHT, i]
+            weight = flight.weight[i]
             along += n[i] * weight * (flight.pose[i] + flight.increment[i] - y[i])
             norm += n[i] * weight * n[i]
         z_min, z_max = null_interval(y, n, flight.lo, flight.hi, flight.tolerance)
@@ -172,10 +182,9 @@ def shift_box(flight: Flight, x: Array, sign: float) -> None:
 def least_squares_step(flight: Flight, manipulability: float) -> int:
     """step <- the one in [lo, hi] that makes the increment e best; returns the costliest bound, see its callee."""
     for i in range(4):
-        flight.damping[i] = (SHIFT + squared_damping(manipulability)) * flight.limits[WEIGHT, i]
-    return box_least_squares(
-        flight.J, flight.e, flight.damping, flight.increment, flight.lo, flight.hi, flight.step, flight.system
-    )
+        flight.damping[i] = (SHIFT + squared_damping(manipulability)) * flight.weight[i]
+    problem = LeastSquares(flight.J, flight.e, flight.damping, flight.increment, flight.lo, flight.hi)
+    return box_least_squares(problem, flight.step, flight.system)
 
 
 @inner
@@ -224,53 +233,11 @@ def finish(flight: Flight) -> tuple[int, int]:
     return slides, code
 
 
-def propose(flight: Flight, parameters: Any, C: Array) -> tuple[int, int]:
-    """next <- the sample for C (3, 3); returns (iterations, code). `block_kernel` puts each method's own here."""
-    raise NotImplementedError
-
-
-def _block(
-    flights: Any, parameters: Any, time: Array, attitude: Array, angles: Array, limited: Codes, iterations: Counts
-) -> None:
-    """Advance `flights[0]` over m samples; see `BlockKernel`."""
-    flight = flights[0]
-    for k in range(time.shape[0]):
-        if flight.phase == FRESH:
-            count, code = 0, int(flight.code)
-            for i in range(4):
-                flight.next[i] = flight.pose[i]
-        else:
-            prepare(flight, time[k] - flight.clock)
-            count, code = propose(flight, parameters, attitude[k])
-        for i in range(4):
-            angles[k, i] = flight.next[i]
-        limited[k] = code
-        iterations[k] = count
-        advance(flight, time[k], code, attitude[k])
-
-
-def block_kernel(name: str, step: Callable[[Flight, Any, Array], tuple[int, int]]) -> BlockKernel:
-    """The block loop around a method's step, a kernel of its own.
-
-    The loop's code with the step for its `propose`: a kernel that took the step as an argument, or from a closure,
-    could not be cached on disk by Numba.
-    """
-    block = FunctionType(_block.__code__, {**_block.__globals__, "propose": step}, name)
-    block.__qualname__ = name
-    block.__module__ = __name__
-    compiled: BlockKernel = kernel(block)
-    return compiled
-
-
-class LimitedStepper:
+class LimitedStepper(BlockStepper):
     """One flight in progress with a method that keeps limits."""
 
     def __init__(self, block: BlockKernel, parameters: Any, gains: Gains, flight: Flight) -> None:
-        self._block = block
-        self._parameters = parameters
-        self._flights = np.zeros(1, FLIGHT)
-        self._flights[0] = flight
-        self._flight: Flight = self._flights[0]
+        super().__init__(block, parameters, flight)
         for name, gain in gains._asdict().items():
             self._flights[name] = gain
 
@@ -278,23 +245,12 @@ class LimitedStepper:
         """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
         hold_position(self._flight, dt)
 
-    def block(self, time: Array, attitude: Array) -> Block:
-        """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
-        m = len(time)
-        out = Block(np.empty((m, 4)), np.empty(m, np.int16), np.empty(m, np.int32))
-        self._block(
-            self._flights, self._parameters, time, np.ascontiguousarray(attitude),
-            out.angles, out.limited, out.iterations,
-        )  # fmt: skip
-        return out
-
 
 def flight_from(name: str, rig: Rig, near: Array | None, attitude: Array) -> Flight:
     """A flight at the exact pose for the attitude (3, 3) nearest to `near` (4,) [rad], or to home where None.
 
     Raises `MethodError` where the rig has no fourth axis.
     """
-    if not rig.geometry.redundant:
-        raise MethodError(f"{name} needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
+    require_fourth_axis(name, rig)
     pose, code = start_pose(rig, attitude, near)
     return new_flight(rig, pose, code, attitude)

@@ -6,10 +6,11 @@ from fullpose._jit import inner, kernel
 from fullpose._typing import Array
 from fullpose.bounds import EXACT, limited_code
 from fullpose.charts import TURN, base_chart, inner_chart, nearest, project
+from fullpose.errors import MethodError
 from fullpose.kinematics import four_axis_pose, rotation_error
+from fullpose.least_squares import LeastSquares, box_least_squares
 from fullpose.limits import HOME, MAX, MIN, WEIGHT, limit_table
 from fullpose.rig import Rig
-from fullpose.step import box_least_squares
 
 GRID = 720  # samples of each chart; half a degree
 HALVINGS = 40  # of the grid's step: far below rounding
@@ -30,10 +31,14 @@ def turn_inside(angle: float, reference: float, low: float, high: float) -> floa
 
 
 @inner
-def copy(source: Array, target: Array) -> None:
-    """target <- source, (4,): a slice assignment takes Numba far longer to compile."""
+def misfit(table: Array, reference: Array, d: Array) -> tuple[float, float]:
+    """(how far d (4,) lies outside the position limits [rad], its weighted squared distance from `reference`)."""
+    outside = 0.0
+    cost = 0.0
     for i in range(4):
-        target[i] = source[i]
+        outside = max(outside, max(table[MIN, i] - d[i], d[i] - table[MAX, i]))
+        cost += table[WEIGHT, i] * (d[i] - reference[i]) ** 2
+    return outside, cost
 
 
 @inner
@@ -42,38 +47,26 @@ def chart_pose(
 ) -> tuple[float, float]:
     """d <- the pose of a chart (0, 1: base chart, branch +1, -1; 2, 3: inner chart) nearest to `reference` [rad].
 
-    Returns (how far outside the position limits [rad], weighted squared distance).
+    Returns its `misfit`.
     """
     branch = 1.0 if chart % 2 == 0 else -1.0
     if chart < 2:
         base_chart(horizontal, C, parameter, branch, d)
     else:
         inner_chart(horizontal, C, parameter, branch, d)
-    outside = 0.0
-    cost = 0.0
     for i in range(4):
         d[i] = turn_inside(d[i], reference[i], table[MIN, i], table[MAX, i])
-        outside = max(outside, max(table[MIN, i] - d[i], d[i] - table[MAX, i]))
-        cost += table[WEIGHT, i] * (d[i] - reference[i]) ** 2
-    return outside, cost
+    return misfit(table, reference, d)
 
 
-@kernel
-def search_start(table: Array, horizontal: bool, C: Array, reference: Array, d: Array) -> int:
-    """d <- the exact pose for C nearest to `reference` inside the position limits; returns -1.
+@inner
+def search_charts(table: Array, horizontal: bool, C: Array, reference: Array, pose: Array, d: Array) -> float:
+    """d <- the exact pose of all charts that is least outside the position limits, of those the nearest, if it beats d.
 
-    Both charts and both their branches are searched on a grid, then by halving steps. Where no exact pose is inside
-    the limits: d <- a pose inside them with the least attitude error near by; returns the frame that keeps it away.
+    Both charts and both their branches are searched on a grid, then by halving steps. Returns how far it lies outside
+    [rad]. pose (4,) is room to work in.
     """
-    pose = np.empty(4)
-    project(horizontal, C, reference, d)
-    outside = 0.0
-    cost = 0.0
-    for i in range(4):
-        outside = max(outside, max(table[MIN, i] - d[i], d[i] - table[MAX, i]))
-        cost += table[WEIGHT, i] * (d[i] - reference[i]) ** 2
-    if outside <= 0.0 and cost < 1e-16:
-        return -1
+    outside, cost = misfit(table, reference, d)
     best_chart = -1
     best_parameter = 0.0
     for chart in range(4):
@@ -84,49 +77,74 @@ def search_start(table: Array, horizontal: bool, C: Array, reference: Array, d: 
             if out < outside or (out <= outside and c < cost):
                 outside, cost = out, c
                 best_chart, best_parameter = chart, parameter
-                copy(pose, d)
-    if best_chart >= 0:
-        step = TURN / GRID
-        for _ in range(HALVINGS):
-            for sign in (-1.0, 1.0):
-                parameter = best_parameter + sign * step
-                out, c = chart_pose(table, horizontal, C, best_chart, parameter, reference, pose)
-                if out < outside or (out <= outside and c < cost):
-                    outside, cost = out, c
-                    best_parameter = parameter
-                    copy(pose, d)
-                    break
-            else:
-                step *= 0.5
-    if outside <= 0.0:
-        return -1
-    # No exact pose: into the limits, then downhill in the attitude error.
-    worst = 0
-    for i in range(4):
-        if max(table[MIN, i] - d[i], d[i] - table[MAX, i]) >= outside:
-            worst = i
-        d[i] = min(max(d[i], table[MIN, i]), table[MAX, i])
+                for i in range(4):
+                    d[i] = pose[i]
+    if best_chart < 0:
+        return outside
+    step = TURN / GRID
+    for _ in range(HALVINGS):
+        for sign in (-1.0, 1.0):
+            parameter = best_parameter + sign * step
+            out, c = chart_pose(table, horizontal, C, best_chart, parameter, reference, pose)
+            if out < outside or (out <= outside and c < cost):
+                outside, cost = out, c
+                best_parameter = parameter
+                for i in range(4):
+                    d[i] = pose[i]
+                break
+        else:
+            step *= 0.5
+    return outside
+
+
+@kernel
+def descend(table: Array, horizontal: bool, C: Array, d: Array) -> None:
+    """d <- a pose inside the position limits with the least attitude error near by. d (4,) inside them."""
     F = np.empty((3, 3))
     J = np.empty((3, 4))
-    A = np.empty((4, 5))
     n = np.empty(4)
-    e = np.empty(3)
     s = np.empty(4)
-    work = np.empty((4, 4))
+    A = np.empty((4, 5))
+    problem = LeastSquares(J, np.empty(3), np.full(4, DESCENT_DAMPING), np.zeros(4), np.empty(4), np.empty(4))
     for _ in range(DESCENTS):
         four_axis_pose(horizontal, d, F, J, n)
-        if rotation_error(C, F, e) < 1e-12:
+        if rotation_error(C, F, problem.e) < 1e-12:
             break
         for i in range(4):
-            work[0, i] = table[MIN, i] - d[i]
-            work[1, i] = table[MAX, i] - d[i]
-            work[2, i] = DESCENT_DAMPING
-            work[3, i] = 0.0
-        box_least_squares(J, e, work[2], work[3], work[0], work[1], s, A)
+            problem.lo[i] = table[MIN, i] - d[i]
+            problem.hi[i] = table[MAX, i] - d[i]
+        box_least_squares(problem, s, A)
         for i in range(4):
             step = min(max(s[i], -LONGEST_DESCENT), LONGEST_DESCENT)
             d[i] = min(max(d[i] + step, table[MIN, i]), table[MAX, i])
-    return worst
+
+
+@kernel
+def search_start(table: Array, horizontal: bool, C: Array, reference: Array, d: Array) -> int:
+    """d <- the exact pose for C nearest to `reference` inside the position limits; returns -1.
+
+    Where no exact pose is inside the limits: d <- a pose inside them with the least attitude error near by; returns the
+    frame that keeps it away.
+    """
+    project(horizontal, C, reference, d)
+    outside, cost = misfit(table, reference, d)
+    if outside > 0.0 or cost >= 1e-16:
+        outside = search_charts(table, horizontal, C, reference, np.empty(4), d)
+    if outside <= 0.0:
+        return -1
+    farthest = 0
+    for i in range(4):
+        if max(table[MIN, i] - d[i], d[i] - table[MAX, i]) >= outside:
+            farthest = i
+        d[i] = min(max(d[i], table[MIN, i]), table[MAX, i])
+    descend(table, horizontal, C, d)
+    return farthest
+
+
+def require_fourth_axis(name: str, rig: Rig) -> None:
+    """Raises `MethodError` where the rig has no redundant axis; `name` is the method's."""
+    if not rig.geometry.redundant:
+        raise MethodError(f"{name} needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
 
 
 def start_pose(rig: Rig, attitude: Array, near: Array | None) -> tuple[Array, int]:

@@ -1,4 +1,4 @@
-"""The record of a flight in progress: what a method that keeps limits knows of its rig, its last samples and its next.
+"""The record of a flight in progress: what a step method knows of its rig, its last samples and its next.
 
 One record a flight, held by its stepper, so that a kernel takes one argument and makes no arrays.
 """
@@ -9,7 +9,7 @@ import numpy as np
 
 from fullpose._jit import inlined
 from fullpose._typing import Array, Codes, Integers
-from fullpose.limits import limit_box, limit_table, tolerances
+from fullpose.limits import WEIGHT, Box, limit_box, limit_table, tolerances
 from fullpose.rig import Rig
 
 FRESH, PLACED, MOVING = range(3)  # no sample yet; a pose but no rate; both
@@ -22,6 +22,7 @@ class Flight(Protocol):
     horizontal: bool
     axes: Integers  # (4,)
     limits: Array  # (6, 4), `limits.limit_table`
+    weight: Array  # (4,) of the frames in the step: the rig's, or what the method makes of them
     # What is wanted of the null space, and of the way back to the attitude: `limited.Gains`
     avoidance: float
     centring: float
@@ -62,7 +63,7 @@ FLIGHT = np.dtype(
         np.record,
         np.dtype(
             [
-                ("horizontal", "?"), ("axes", "i8", 4), ("limits", "f8", (6, 4)),
+                ("horizontal", "?"), ("axes", "i8", 4), ("limits", "f8", (6, 4)), ("weight", "f8", 4),
                 ("avoidance", "f8"), ("centring", "f8"), ("homing", "f8"), ("recovery", "f8"),
                 ("phase", "i8"), ("code", "i8"), ("clock", "f8"), ("past", "f8"),
                 ("pose", "f8", 4), ("rate", "f8", 4), ("target", "f8", (3, 3)),
@@ -84,6 +85,7 @@ def new_flight(rig: Rig, pose: Array, code: int, attitude: Array) -> Flight:
     flight.horizontal = rig.geometry.horizontal
     flight.axes[:] = rig.axes
     flight.limits[:] = limit_table(rig)
+    flight.weight[:] = flight.limits[WEIGHT]
     flight.phase = FRESH
     flight.code = code
     flight.pose[:] = pose
@@ -100,14 +102,12 @@ def hold_position(flight: Flight, dt: float) -> None:
 
 
 @inlined
-def prepare(flight: Flight, ahead: float) -> None:
-    """lo, hi, their codes, tolerance <- the box of the next sample, `ahead` [s] from the last."""
+def box_ahead(flight: Flight) -> None:
+    """lo, hi, their codes, tolerance <- the box of the next sample."""
     past = flight.past if flight.phase == MOVING else 0.0
-    flight.ahead = ahead
-    limit_box(
-        flight.limits, flight.pose, flight.rate, past, ahead, flight.lo, flight.hi, flight.lo_code, flight.hi_code
-    )
-    tolerances(flight.limits, past, ahead, flight.tolerance)
+    box = Box(flight.lo, flight.hi, flight.lo_code, flight.hi_code)
+    limit_box(flight.limits, flight.pose, flight.rate, past, flight.ahead, box)
+    tolerances(flight.limits, past, flight.ahead, flight.tolerance)
 
 
 @inlined

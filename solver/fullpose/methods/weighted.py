@@ -9,23 +9,18 @@ w1 = near + (far - near) (1 - exp(-(cos d3 / width)^2)). Closed loop: the step c
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
-
-from fullpose._jit import kernel
-from fullpose._typing import Array, Counts, Integers
-from fullpose.kinematics import jacobian, null_vector, payload_attitude, rotation_error
+from fullpose._jit import inner
+from fullpose._typing import Array
+from fullpose.bounds import EXACT
+from fullpose.limits import WEIGHT
 from fullpose.methods.base import StepMethod, Stepper
-from fullpose.methods.unlimited import (
-    SequenceStepper,
-    exact_start,
-    first_sample,
-    keep_sample,
-    require_fourth_axis,
-)
+from fullpose.methods.block import BlockStepper, block_kernel, record_of
+from fullpose.methods.state import Flight
+from fullpose.methods.unlimited import increment_to, least_norm_step, open_flight
 from fullpose.options import Options, ranged
 from fullpose.rig import Rig
-from fullpose.step import least_norm, squared_damping
 
 
 @dataclass(frozen=True)
@@ -37,48 +32,23 @@ class WeightedOptions(Options):
     width: float = ranged(0.35, 1e-3, 10.0)
 
 
-@kernel
-def weighted_block(
-    _horizontal: bool,
-    axes: Integers,
-    weight: Array,
-    parameters: Array,
-    time: Array,
-    attitude: Array,
-    state: Array,
-    angles: Array,
-    iterations: Counts,
-) -> None:
-    """See `sequence.SequenceKernel`; parameters: far, near, width."""
-    F = np.empty((3, 3))
-    J = np.empty((3, 4))
-    n = np.empty(4)
-    e = np.empty(3)
-    p = np.empty(4)
-    w = weight.copy()
-    zero = np.zeros(4)
-    far, near, width = parameters[0], parameters[1], parameters[2]
-    for k in range(time.shape[0]):
-        C = attitude[k]
-        if first_sample(time[k], C, state, angles[k]):
-            continue
-        d = state[0:4]
-        payload_attitude(axes, d, F)
-        rotation_error(C, F, e)
-        jacobian(axes, d, J)
-        c3 = math.cos(d[2]) / width
-        w[0] = weight[0] * (near + (far - near) * (1.0 - math.exp(-c3 * c3)))
-        least_norm(J, w, zero, e, squared_damping(null_vector(J, n)), p)
-        for i in range(4):
-            angles[k, i] = d[i] + p[i]
-        iterations[k] = 1
-        keep_sample(time[k], C, angles[k], state)
+@inner
+def weighted_step(flight: Flight, parameters: Any, C: Array) -> tuple[int, int]:
+    """See `block.propose`; parameters: (1,) the options."""
+    own: WeightedOptions = parameters[0]
+    increment_to(flight, C)
+    c3 = math.cos(flight.pose[2]) / own.width
+    base = own.near + (own.far - own.near) * (1.0 - math.exp(-c3 * c3))
+    flight.weight[0] = flight.limits[WEIGHT, 0] * base
+    least_norm_step(flight)
+    return 1, EXACT
+
+
+weighted_block = block_kernel("weighted_block", weighted_step)
 
 
 def _stepper(rig: Rig, options: WeightedOptions, start: Array | None, attitude: Array) -> Stepper:
-    require_fourth_axis("weighted", rig)
-    parameters = [options.far, options.near, options.width]
-    return SequenceStepper(rig, weighted_block, parameters, exact_start(rig, attitude, start))
+    return BlockStepper(weighted_block, record_of(options), open_flight("weighted", rig, start, attitude))
 
 
 METHOD = StepMethod(

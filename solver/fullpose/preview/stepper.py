@@ -20,24 +20,24 @@ from fullpose._typing import Array
 from fullpose.bounds import EXACT
 from fullpose.errors import MethodError
 from fullpose.kinematics import jacobian, null_vector
-from fullpose.limits import MAX, MIN, WEIGHT, limit_table
+from fullpose.limits import MAX, MIN, limit_table
 from fullpose.methods.base import Block
+from fullpose.methods.block import block_kernel
 from fullpose.methods.limited import (
     Gains,
     LimitedStepper,
-    block_kernel,
+    closed_form_step,
     finish,
     flight_from,
     goal,
     null_space_increment,
 )
 from fullpose.methods.start_pose import start_pose
-from fullpose.methods.state import FRESH, MOVING, Flight
+from fullpose.methods.state import FRESH, MOVING, Flight, box_ahead
 from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import Track
 from fullpose.preview.replan import FIT_WINDOW, Ahead, Replan
 from fullpose.rig import Rig
-from fullpose.step import quadratic_step
 from fullpose.trajectory.nodes import fill_nodes, grid_circle
 
 START_GRID = 60  # nodes a turn among which a free start is chosen
@@ -78,19 +78,17 @@ def follow(flight: Flight, way_time: Array, way_pose: Array, way_rate: Array, om
 
 @inner
 def preview_step(flight: Flight, way: tuple[Array, Array, Array, float], C: Array) -> tuple[int, int]:
-    """See `limited.propose`: the exact step, but for the null-space increment.
+    """See `block.propose`: the exact step, but for the null-space increment.
 
     way: times (k,) [s], poses and rates (k, 4) there, bandwidth [1/s]; k = 0: there is none.
     """
+    box_ahead(flight)
     if not follow(flight, way[0], way[1], way[2], way[3]):
         null_space_increment(flight)
     goal(flight, C)
     jacobian(flight.axes, flight.pose, flight.J)
     manipulability = null_vector(flight.J, flight.null)
-    quadratic_step(
-        flight.J, flight.null, manipulability, flight.limits[WEIGHT], flight.pose, flight.increment, flight.e,
-        flight.lo, flight.hi, flight.tolerance, flight.guess,
-    )  # fmt: skip
+    closed_form_step(flight, manipulability, flight.pose, flight.guess)
     return finish(flight)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from fullpose._jit import kernel
 from fullpose._typing import Array
 from fullpose.charts import TURN, project
-from fullpose.limits import ACCELERATION, HOME, MAX, MIN, RATE, WEIGHT, limit_box, tolerances
+from fullpose.limits import ACCELERATION, HOME, MAX, MIN, RATE, WEIGHT, empty_box, limit_box, tolerances
 from fullpose.step import clamp, null_interval
 
 # Indices of the weights of the cost, one array
@@ -160,11 +160,10 @@ def search(
     new_parent = np.empty(space, np.int32)
     new_over = np.empty(space, np.bool_)
     table_of = np.empty(4 * PLACES * SPEEDS, np.int32)
-    lo = np.empty(4)
-    hi = np.empty(4)
+    box = empty_box()
+    lo = box.lo
+    hi = box.hi
     tolerance = np.empty(4)
-    lo_code = np.empty(4, np.int16)
-    hi_code = np.empty(4, np.int16)
     y = np.empty(4)
     x = np.empty(4)
     n = np.empty(4)
@@ -178,7 +177,7 @@ def search(
         filled = 0
         for b in range(count):
             here = d[stage - 1, b]
-            limit_box(table, here, v[b], before, h, lo, hi, lo_code, hi_code)
+            limit_box(table, here, v[b], before, h, box)
             for i in range(4):
                 x[i] = here[i] + v[b, i] * h
             project(horizontal, attitude[stage], x, y)

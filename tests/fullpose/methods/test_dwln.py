@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
+from fullpose.bounds import EXACT
 from fullpose.kinematics import jacobian
+from fullpose.limits import WEIGHT
+from fullpose.methods.block import record_of
 from fullpose.methods.dwln import (
     LONGEST,
     METHOD,
@@ -17,6 +20,7 @@ from fullpose.methods.dwln import (
     limit_gradient,
     smallest_singular_value,
 )
+from fullpose.methods.state import new_flight
 from fullpose.methods.three_axis import METHOD as THREE_AXIS
 from fullpose.methods.three_axis import ThreeAxisOptions
 from fullpose.resample import resample
@@ -48,21 +52,24 @@ def test_limit_gradient_is_the_derivative_of_chan_and_dubeys_function() -> None:
 
 
 def test_weights() -> None:
-    K, A, B1, B2 = 5.0, 3.0, 0.2, 0.4
-    parameters, unit, w = np.array([K, A, B1, B2]), np.ones(4), np.empty(4)
-    x = np.array([0.3, 0.1, 1.4, -0.5])
+    options = DwlnOptions(base_weight=5.0, outer_gain=3.0, outer_width=0.2, middle_width=0.4)
+    flight = new_flight(RIGS["vertical-4"], np.zeros(4), EXACT, np.eye(3))
+    flight.limits[WEIGHT] = 2.0, 3.0, 4.0, 5.0
+    flight.weight[:] = flight.limits[WEIGHT]
+    flight.next[:] = 0.3, 0.1, 1.4, -0.5
     H = limit_gradient(1.4)
-    bump = A * math.exp(-((math.sin(0.1) / B1) ** 2) - (math.cos(1.4) / B2) ** 2)
-    dwln_weights(unit, parameters, x, 0.01, w)
-    np.testing.assert_allclose(w, [K / (1 + H), 1 + bump, 1 + H, 1.0])
-    dwln_weights(unit, parameters, x, -0.01, w)
-    assert w[2] == 1.0
+    bump = 3.0 * math.exp(-((math.sin(0.1) / 0.2) ** 2) - (math.cos(1.4) / 0.4) ** 2)
+    dwln_weights(flight, record_of(options)[0], 0.01)
+    np.testing.assert_allclose(flight.weight, [2.0 * 5.0 / (1 + H), 3.0 * (1 + bump), 4.0 * (1 + H), 5.0])
+    dwln_weights(flight, record_of(options)[0], -0.01)
+    assert flight.weight[2] == 4.0
 
 
 def weighted_step(J: np.ndarray, w: np.ndarray, e: np.ndarray, damping: float) -> np.ndarray:
-    p = np.empty(4)
-    damped_step(J, w, e, damping, np.empty((3, 4)), p)
-    return p
+    flight = new_flight(RIGS["vertical-4"], np.zeros(4), EXACT, np.eye(3))
+    flight.J[:], flight.weight[:], flight.e[:] = J, w, e
+    damped_step(flight, damping)
+    return flight.step.copy()
 
 
 def test_a_step_is_the_papers_formula() -> None:

@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
+from fullpose.kinematics import jacobian
 from fullpose.methods.weighted import METHOD, WeightedOptions
 from fullpose.rig import builtin_rigs
-from fullpose.scenarios import SCENARIOS
-from fullpose.verify import verify
+from fullpose.scenarios import SCENARIOS, random_flight
+from fullpose.verify import payload_attitudes, verify
 
 RIG = builtin_rigs()["vertical-4"]
 
@@ -23,6 +25,23 @@ def test_the_base_rests_far_from_the_singularity_and_moves_near_it() -> None:
     near = METHOD.stepper(RIG, WeightedOptions(), np.array([0.0, 0.14, 1.2, 0.0]), C[0]).block(time, C).angles
     assert abs(np.cos(near[0, 2])) < 0.5
     assert np.abs(np.diff(near[:, 0])).max() > 5.0 * np.abs(np.diff(away[:, 0])).max()
+
+
+def test_a_step_is_the_weighted_least_norm_of_the_modules_law() -> None:
+    options = WeightedOptions(far=50.0, near=0.5, width=0.4)
+    time, q = random_flight(5, 0.2, 100.0, 2.0)
+    C = dcm_from_quaternion(q)
+    angles = METHOD.stepper(RIG, options, None, C[0]).block(time, C).angles
+    attitude = payload_attitudes(RIG, angles)
+    J = np.empty((3, 4))
+    for k in range(1, time.size):
+        d = angles[k - 1]
+        w = RIG.weight.copy()
+        w[0] *= 0.5 + (50.0 - 0.5) * (1.0 - np.exp(-((np.cos(d[2]) / 0.4) ** 2)))
+        e = Rotation.from_matrix((C[k] @ attitude[k - 1].T).T).as_rotvec()
+        jacobian(RIG.axes, d, J)
+        expected = np.linalg.pinv(J / np.sqrt(w)) @ e / np.sqrt(w)
+        np.testing.assert_allclose(angles[k] - d, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["large_no_limit", "both_beyond_90", "double_loop"])
