@@ -7,7 +7,7 @@ import numba
 
 Kernel = TypeVar("Kernel", bound=Callable[..., object])
 Scalar = float | bool | None  # int is a float to the type checker
-Inner = TypeVar("Inner", bound=Callable[..., Scalar | tuple[Scalar, Scalar]])
+Inner = TypeVar("Inner", bound=Callable[..., Scalar | tuple[Scalar, ...]])
 
 BORROW: dict[str, Any] = {"_nrt": False}  # no count of an array's owners; not in Numba's type stubs
 

@@ -91,6 +91,27 @@ def quaternion_from_dcm(C: ArrayLike) -> Array:
     return np.asarray(np.where(q[..., :1] < 0.0, -q, q))
 
 
+def quaternion_from_rotation_vector(v: Array) -> Array:
+    """The unit quaternion (w, x, y, z) of the rotation vectors v (n, 3) [rad]. (n, 4)"""
+    half = 0.5 * np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.concatenate([np.cos(half), 0.5 * v * np.sinc(half / np.pi)], axis=-1)
+
+
+def quaternion_product(a: Array, b: Array) -> Array:
+    """a b, Hamilton's product of (w, x, y, z): first b, then a, about fixed axes. (n, 4) or (4,) each."""
+    aw, ax, ay, az = np.moveaxis(a, -1, 0)
+    bw, bx, by, bz = np.moveaxis(b, -1, 0)
+    return np.stack(
+        [
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ],
+        axis=-1,
+    )
+
+
 def quaternion_from_ned(q: ArrayLike) -> Array:
     """Ours from a north-east-down, forward-right-down quaternion (w, x, y, z): the axes change, x=N, y=-D, z=E.
 

@@ -23,6 +23,17 @@ def nearest(angle: float, reference: float) -> float:
 
 
 @inlined
+def vertical_view(horizontal: bool, C: Array) -> tuple[float, ...]:
+    """The nine entries, row by row, of the attitude C (3, 3) as the vertical rig sees it.
+
+    Rows and columns x, z, -y of the horizontal rig's.
+    """
+    if horizontal:
+        return C[0, 0], C[0, 2], -C[0, 1], C[2, 0], C[2, 2], -C[2, 1], -C[1, 0], -C[1, 2], C[1, 1]
+    return C[0, 0], C[0, 1], C[0, 2], C[1, 0], C[1, 1], C[1, 2], C[2, 0], C[2, 1], C[2, 2]
+
+
+@inlined
 def base_chart(horizontal: bool, C: Array, d1: float, branch: float, d: Array) -> None:
     """d <- the solution with base angle d1 and sign(cos d3) = branch (+1 or -1), angles in (-pi, pi] but d1 itself.
 
@@ -30,15 +41,8 @@ def base_chart(horizontal: bool, C: Array, d1: float, branch: float, d: Array) -
     """
     c = math.cos(d1)
     s = math.sin(d1)
-    # M = V Ry(d1)^T, V the attitude as the vertical rig sees it: rows and columns (x, z, -y) of the horizontal one's.
-    if horizontal:
-        v00, v01, v02 = C[0, 0], C[0, 2], -C[0, 1]
-        v10, v11, v12 = C[2, 0], C[2, 2], -C[2, 1]
-        v20, v21, v22 = -C[1, 0], -C[1, 2], C[1, 1]
-    else:
-        v00, v01, v02 = C[0, 0], C[0, 1], C[0, 2]
-        v10, v11, v12 = C[1, 0], C[1, 1], C[1, 2]
-        v20, v21, v22 = C[2, 0], C[2, 1], C[2, 2]
+    # M = V Ry(d1)^T
+    v00, v01, v02, v10, v11, v12, v20, v21, v22 = vertical_view(horizontal, C)
     m00 = v00 * c - v02 * s
     m01 = v01
     m02 = v00 * s + v02 * c
@@ -64,15 +68,8 @@ def inner_chart(horizontal: bool, C: Array, d4: float, branch: float, d: Array) 
     """
     c = math.cos(d4)
     s = math.sin(d4)
-    # N = Rx(d4)^T V, V as in the base chart.
-    if horizontal:
-        v00, v02 = C[0, 0], -C[0, 1]
-        v10, v11, v12 = C[2, 0], C[2, 2], -C[2, 1]
-        v20, v21, v22 = -C[1, 0], -C[1, 2], C[1, 1]
-    else:
-        v00, v02 = C[0, 0], C[0, 2]
-        v10, v11, v12 = C[1, 0], C[1, 1], C[1, 2]
-        v20, v21, v22 = C[2, 0], C[2, 1], C[2, 2]
+    # N = Rx(d4)^T V
+    v00, _, v02, v10, v11, v12, v20, v21, v22 = vertical_view(horizontal, C)
     n10 = c * v10 - s * v20
     n11 = c * v11 - s * v21
     n12 = c * v12 - s * v22
@@ -90,6 +87,15 @@ def inner_chart(horizontal: bool, C: Array, d4: float, branch: float, d: Array) 
         d[1] = -d[1]
 
 
+@inlined
+def turn_to(d: Array, n0: float, n1: float, n2: float, n3: float) -> None:
+    """d <- its angles at the turns nearest to n0..n3 [rad]."""
+    d[0] = nearest(d[0], n0)
+    d[1] = nearest(d[1], n1)
+    d[2] = nearest(d[2], n2)
+    d[3] = nearest(d[3], n3)
+
+
 @inner
 def project_inner(horizontal: bool, C: Array, near: Array, d: Array) -> None:
     """d <- the exact solution for C with the inner angle of `near`, on its branch and at the turns nearest to it.
@@ -101,10 +107,7 @@ def project_inner(horizontal: bool, C: Array, near: Array, d: Array) -> None:
     if horizontal:
         upward = not upward
     inner_chart(horizontal, C, n3, 1.0 if upward else -1.0, d)
-    d[0] = nearest(d[0], n0)
-    d[1] = nearest(d[1], n1)
-    d[2] = nearest(d[2], n2)
-    d[3] = nearest(d[3], n3)
+    turn_to(d, n0, n1, n2, n3)
 
 
 @inner
@@ -121,7 +124,4 @@ def project(horizontal: bool, C: Array, near: Array, d: Array) -> None:
         project_inner(horizontal, C, near, d)
         return
     base_chart(horizontal, C, n0, 1.0 if cos_d3 >= 0.0 else -1.0, d)
-    d[0] = nearest(d[0], n0)
-    d[1] = nearest(d[1], n1)
-    d[2] = nearest(d[2], n2)
-    d[3] = nearest(d[3], n3)
+    turn_to(d, n0, n1, n2, n3)

@@ -140,7 +140,7 @@ def four_axis_pose(horizontal: bool, d: Array, F: Array, J: Array, n: Array) -> 
     return manipulability
 
 
-@kernel
+@inlined
 def singularity_measure(d: Array) -> float:
     """sin^2 d2 + cos^2 d3 of a four-axis rig: zero only at its singularity (mathematics, section 3). d (4,) [rad]."""
     s = math.sin(d[1])

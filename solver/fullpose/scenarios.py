@@ -11,7 +11,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fullpose._typing import Array
-from fullpose.attitude import dcm_from_quaternion, euler_from_dcm, quaternion_from_euler
+from fullpose.attitude import (
+    dcm_from_quaternion,
+    euler_from_dcm,
+    quaternion_from_euler,
+    quaternion_from_rotation_vector,
+    quaternion_product,
+)
 from fullpose.errors import InputError
 
 DEG = math.pi / 180.0
@@ -100,7 +106,7 @@ class Scenario:
         q = quaternion_from_euler(*self._untilted.T)
         if self.tilt == 0.0:
             return q
-        return _product(np.array([math.cos(0.5 * self.tilt), math.sin(0.5 * self.tilt), 0.0, 0.0]), q)
+        return quaternion_product(np.array([math.cos(0.5 * self.tilt), math.sin(0.5 * self.tilt), 0.0, 0.0]), q)
 
     @property
     def _untilted(self) -> Array:
@@ -274,27 +280,8 @@ def random_flight(seed: int, duration_s: float, rate_hz: float, body_rate_rad_s:
     early, late = scale * rate(middle - offset), scale * rate(middle + offset)
     # q' = q (0, w) / 2, so increments multiply from the right and the commutator keeps the order early x late.
     increment = 0.5 * h * (early + late) + math.sqrt(3.0) / 12.0 * h * h * np.cross(early, late)
-    steps = np.vstack([first / np.linalg.norm(first), _quaternion_from_rotation_vector(increment)])
+    steps = np.vstack([first / np.linalg.norm(first), quaternion_from_rotation_vector(increment)])
     return time, _running_product(steps)
-
-
-def _quaternion_from_rotation_vector(v: Array) -> Array:
-    half = 0.5 * np.linalg.norm(v, axis=-1, keepdims=True)
-    return np.concatenate([np.cos(half), 0.5 * v * np.sinc(half / math.pi)], axis=-1)
-
-
-def _product(a: Array, b: Array) -> Array:
-    aw, ax, ay, az = np.moveaxis(a, -1, 0)
-    bw, bx, by, bz = np.moveaxis(b, -1, 0)
-    return np.stack(
-        [
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ],
-        axis=-1,
-    )
 
 
 def _running_product(q: Array) -> Array:
@@ -302,6 +289,6 @@ def _running_product(q: Array) -> Array:
     total = q.copy()
     span = 1
     while span < total.shape[0]:
-        total[span:] = _product(total[:-span], total[span:])
+        total[span:] = quaternion_product(total[:-span], total[span:])
         span *= 2
     return np.asarray(total / np.linalg.norm(total, axis=-1, keepdims=True))

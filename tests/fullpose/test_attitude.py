@@ -14,6 +14,8 @@ from fullpose.attitude import (
     quaternion_from_dcm,
     quaternion_from_euler,
     quaternion_from_ned,
+    quaternion_from_rotation_vector,
+    quaternion_product,
 )
 
 ANGLE = st.one_of(
@@ -77,3 +79,15 @@ def test_many_rows_at_once() -> None:
     assert rows.shape == (50, 3, 3)
     for k in range(50):
         np.testing.assert_array_equal(rows[k], dcm_from_euler(*euler[:, k])[0])
+
+
+def test_product_and_rotation_vector_against_scipy() -> None:
+    random = np.random.default_rng(4)
+    v = random.normal(size=(50, 3)) * 10.0 ** random.uniform(-9.0, 0.5, (50, 1))
+    v[0] = 0.0
+    first, second = Rotation.from_rotvec(v), Rotation.random(50, rng=random)
+    q, p = quaternion_from_rotation_vector(v), second.as_quat(scalar_first=True)
+    np.testing.assert_allclose(q, first.as_quat(canonical=False, scalar_first=True), atol=1e-15)
+    expected = (second * first).as_quat(canonical=True, scalar_first=True)
+    product = quaternion_product(p, q)
+    np.testing.assert_allclose(product * np.sign(product[:, :1]), expected, atol=1e-15)

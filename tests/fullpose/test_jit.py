@@ -53,4 +53,4 @@ def test_an_inner_kernel_makes_no_array_and_returns_none(function: ast.FunctionD
     returned = ast.unparse(function.returns)
     for word in ("float", "int", "bool", "None", "tuple"):
         returned = returned.replace(word, "")
-    assert not returned.strip("[], ")
+    assert not returned.strip("[]., ")

@@ -64,38 +64,38 @@ class SimulatedDrive:
     name = "simulated"
 
     def __init__(self, rig: Rig, rate_hz: float, options: SimulatedOptions) -> None:
-        self._dt = 1.0 / rate_hz
         self._options = options
-        start = rig.home if options.start_deg is None else np.radians(options.start_deg)
-        self._state = np.zeros((3, 4))
-        self._state[servo.MOTOR] = self._state[servo.LOAD] = start
-        self._parameters = np.zeros((7, 4))
-        self._parameters[servo.OMEGA] = 2.0 * math.pi * options.bandwidth_hz
-        self._parameters[servo.DAMPING] = options.damping
-        self._parameters[servo.MAX_RATE] = np.minimum(rig.max_rate * options.rate_margin, _MOST_RATE)
+        self._tables = np.zeros(1, servo.TABLE)
+        table: servo.Table = self._tables[0]
+        table.dt = self._dt = 1.0 / rate_hz
+        table.mode = servo.DISABLED
+        table.watchdog = self._watchdog = max(2, round(options.watchdog_s * rate_hz))
+        table.present[list(rig.geometry.frames)] = 1
+        table.motor[:] = table.load[:] = rig.home if options.start_deg is None else np.radians(options.start_deg)
+        table.due[:] = table.load
+        table.omega[:] = 2.0 * math.pi * options.bandwidth_hz
+        table.damping[:] = options.damping
+        table.max_rate[:] = np.minimum(rig.max_rate * options.rate_margin, _MOST_RATE)
         most = np.minimum(rig.max_acceleration * options.acceleration_margin, _MOST_ACCELERATION)
-        self._parameters[servo.MAX_ACCELERATION] = most
-        self._parameters[servo.BACKLASH] = math.radians(options.backlash_deg)
-        self._parameters[servo.FEED_FORWARD] = options.feed_forward
-        self._parameters[servo.PRESENT, list(rig.geometry.frames)] = 1.0
-        self._present = self._parameters[servo.PRESENT] != 0.0
+        table.max_acceleration[:] = most
+        table.backlash[:] = math.radians(options.backlash_deg)
+        table.feed_forward[:] = options.feed_forward
+        # Views, for the loop: to read a record's attribute takes microseconds.
+        self._mode, self._quiet = self._tables["mode"], self._tables["quiet"]
+        self._motor, self._rate, self._load = (self._tables[name][0] for name in ("motor", "rate", "load"))
+        self._due, self._demand = self._tables["due"][0], self._tables["demand"][0]
+        self._stuck, self._runaway = self._tables["stuck"][0], self._tables["runaway"][0]
         self._resolution = 2.0 * math.pi / 2**options.encoder_bits
         generator = np.random.default_rng(options.seed)
         self._noise = generator.normal(0.0, math.radians(options.noise_deg), (_NOISE_ROWS, 4))
-        self._noise[:, ~self._present] = 0.0
-        self._disturbed = np.zeros((2, 4))
-        self._was = self._state[servo.LOAD].copy()
-        self._demand = np.zeros((3, 4))
+        self._noise[:, table.present == 0] = 0.0
         self._late: deque[Array] = deque()  # demands on their way, under a latency fault
-        self._mode = servo.DISABLED
         self._status = Status.OK
         self._row = 0
         self._read_at = self._enabled_at = math.nan
-        self._quiet = 0
-        self._watchdog = max(2, round(options.watchdog_s * rate_hz))
         self._epoch = self._sequence = -1
         self._linked = False
-        self._advance(0)  # compiles the kernel now, not in the first tick
+        servo.advance(self._tables, 0)  # compiles the kernel now, not in the first tick
 
     def connect(self, now: float) -> None:
         """Always succeeds."""
@@ -108,12 +108,12 @@ class SimulatedDrive:
             raise DriveError("the simulated table is not connected")
         if math.isnan(self._enabled_at):
             self._enabled_at = self._read_at
-        self._demand[0] = self._was[:] = self._state[servo.MOTOR]
+        self._demand[0] = self._due[:] = self._motor
         self._demand[1:] = 0.0
         self._late.clear()
-        self._quiet = 0
+        self._quiet[0] = 0
         self._epoch = self._sequence = -1  # a new series: the controller may be a new process
-        self._mode = servo.ENABLED
+        self._mode[0] = servo.ENABLED
         self._status = Status.OK
 
     def read(self, now: float, position: Array, rate: Array) -> int:
@@ -126,30 +126,30 @@ class SimulatedDrive:
         if link:
             self._linked = False
         if not self._linked:
-            self._quiet = self._watchdog + 1
+            self._quiet[0] = self._watchdog + 1
         if latency == 0 and self._late:
             self._demand[:] = self._late[-1]
             self._late.clear()
         while len(self._late) > latency:
             self._demand[:] = self._late.popleft()
-        before = self._mode
-        self._mode = self._advance(ticks)
-        self._quiet += ticks
-        self._was[:] = self._demand[0]
-        if before == servo.ENABLED and self._mode == servo.BRAKING:
+        before = self._mode[0]
+        servo.advance(self._tables, ticks)
+        self._quiet[0] += ticks
+        self._due[:] = self._demand[0]
+        if before == servo.ENABLED and self._mode[0] == servo.BRAKING:
             self._status |= Status.WATCHDOG
         if not self._linked:
             return int(self._status | Status.LINK_LOST)
         self._row = (self._row + 1) % _NOISE_ROWS
-        position[:] = np.round(self._state[servo.LOAD] / self._resolution) * self._resolution + self._noise[self._row]
-        rate[:] = self._state[servo.RATE]
+        position[:] = np.round(self._load / self._resolution) * self._resolution + self._noise[self._row]
+        rate[:] = self._rate
         status = self._status
         if broken >= 0:
             position[broken] = math.nan
             status |= Status.ENCODER
-        if self._mode == servo.ENABLED:
+        if self._mode[0] == servo.ENABLED:
             status |= Status.ENABLED
-        elif self._mode == servo.BRAKING:
+        elif self._mode[0] == servo.BRAKING:
             status |= Status.BRAKING
         self._status &= ~Status.STALE_WRITE
         return int(status)
@@ -160,7 +160,7 @@ class SimulatedDrive:
             self._status |= Status.STALE_WRITE
             return
         self._epoch, self._sequence = epoch, sequence
-        self._quiet = 0
+        self._quiet[0] = 0
         if self._late or self._latency_now:
             self._late.append(np.array([position, rate, acceleration]))
             return
@@ -170,31 +170,16 @@ class SimulatedDrive:
 
     def brake(self) -> None:
         """Brake with all the motors have."""
-        self._mode = servo.BRAKING
+        self._mode[0] = servo.BRAKING
 
     def disable(self) -> None:
         """Power off; the brakes stop what moves."""
-        self._mode = servo.DISABLED
+        self._mode[0] = servo.DISABLED
 
     def close(self) -> None:
         """Let the link go."""
-        self._mode = servo.BRAKING
+        self._mode[0] = servo.BRAKING
         self._linked = False
-
-    def _advance(self, ticks: int) -> int:
-        mode: int = servo.advance(
-            ticks,
-            self._dt,
-            self._state,
-            self._parameters,
-            self._disturbed,
-            self._was,
-            self._demand,
-            self._mode,
-            self._quiet,
-            self._watchdog,
-        )
-        return mode
 
     _latency_now = 0
 
@@ -202,7 +187,7 @@ class SimulatedDrive:
         """(latency in ticks, frame whose encoder is lost or -1, whether the link is cut) by the script at `now`."""
         latency, broken, link = 0, -1, False
         if self._options.faults and not math.isnan(self._enabled_at):
-            self._disturbed[:] = 0.0
+            self._stuck[:] = self._runaway[:] = 0
             for fault in self._options.faults:
                 if not fault.active(now - self._enabled_at):
                     continue
@@ -213,8 +198,8 @@ class SimulatedDrive:
                 elif fault.kind == "encoder":
                     broken = FRAMES.index(fault.frame or "")
                 else:
-                    row = servo.STUCK if fault.kind == "stuck" else servo.RUNAWAY
-                    self._disturbed[row, FRAMES.index(fault.frame or "")] = 1.0
+                    disturbed = self._stuck if fault.kind == "stuck" else self._runaway
+                    disturbed[FRAMES.index(fault.frame or "")] = 1
         self._latency_now = latency
         return latency, broken, link
 

@@ -14,19 +14,11 @@ from fullpose._typing import Array, Progress
 from fullpose.charts import TURN
 from fullpose.limits import limit_table
 from fullpose.rig import Rig
-from fullpose.trajectory.beam_search import (
-    ACCELERATIONS,
-    EXCESS,
-    HOMING,
-    RANGES,
-    RATES,
-    SINGULARITY,
-    WEIGHTS,
-    search,
-)
+from fullpose.trajectory.beam_search import Stages, Start, search
 from fullpose.trajectory.curve import closest_all
-from fullpose.trajectory.nodes import NARROW, fill_nodes, grid_circle, lattice
+from fullpose.trajectory.nodes import NARROW, empty_nodes, fill_nodes, lattice
 from fullpose.trajectory.options import PlanOptions
+from fullpose.trajectory.stage_cost import Costs
 
 PIECE = 20.0  # [s] decided at once; bounds the memory, and the time until a cancel is heard
 FORESIGHT = 5.0  # [s] looked at beyond a piece before it is decided
@@ -59,10 +51,7 @@ def beam_path(
     any rate may follow. progress(done, total) after each piece.
     """
     n = len(time)
-    weights = np.zeros(WEIGHTS)
-    weights[RATES], weights[ACCELERATIONS] = 1.0, breadth.acceleration_cost
-    weights[SINGULARITY], weights[RANGES], weights[EXCESS] = SINGULARITY_COST, RANGE_COST, EXCESS_COST
-    weights[HOMING] = options.home_cost
+    costs = Costs(1.0, breadth.acceleration_cost, SINGULARITY_COST, RANGE_COST, EXCESS_COST, float(options.home_cost))
     table = limit_table(rig)
     node_path = np.empty((n, 4))
     begin = 0
@@ -72,9 +61,10 @@ def beam_path(
         following = n - 1 if end == n else max(begin + 1, int(np.searchsorted(time, time[begin] + PIECE)))
         end = max(end, following + 1)
         piece = np.empty((end - begin, 4))
+        stages = Stages(time[begin:end], attitude[begin:end], np.ones(end - begin))
         search(
-            rig.geometry.horizontal, table, weights, time[begin:end], attitude[begin:end], np.ones(end - begin), past,
-            first, first_rate, breadth.slides, breadth.beam, piece,
+            rig.geometry.horizontal, table, costs, stages, Start(first, first_rate, past),
+            breadth.slides, breadth.beam, piece,
         )  # fmt: skip
         node_path[begin : following + 1] = piece[: following + 1 - begin]
         if progress is not None:
@@ -91,12 +81,9 @@ def first_poses(attitude: Array, rig: Rig) -> Array:
     """Exact poses (m, 4) [rad] for attitude (3, 3) inside the ranges, on a coarse grid, in the turns next to home."""
     span = (rig.position_max - rig.position_min)[list(rig.geometry.frames)]
     grid = lattice(rig, FIRST_GRID if span.min() > NARROW * FIRST_GRID else NARROW_GRID)
-    n = 4 * grid.size
-    position, measure, alive = np.zeros((n, 4)), np.ones(n), np.zeros(n, np.bool_)
-    fill_nodes(
-        grid.horizontal, attitude, *grid_circle(grid.size), grid.low, grid.high, position, measure, alive
-    )  # fmt: skip
-    poses = position[alive]
+    nodes = empty_nodes(grid.size)
+    fill_nodes(grid.horizontal, attitude, grid.nodes, nodes)
+    poses = nodes.position[nodes.alive]
     wraps = grid.wraps
     poses[:, wraps] += TURN * np.rint((rig.home[wraps] - poses[:, wraps]) / TURN)
     for frame in np.flatnonzero(np.isfinite(rig.position_max) & (rig.position_max - rig.position_min >= TURN)).tolist():

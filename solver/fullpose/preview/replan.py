@@ -1,8 +1,9 @@
 """The way ahead of a rig in motion: what `preview` is told to weigh, the job that finds a way, and the way found.
 
-A job is frozen and picklable, and its `run` may be called in any thread or process. It searches (`fullpose.plan.
-horizon`), which decides the way round, and then refines what was found (`fullpose.trajectory.sqp`), as `plan` does with
-a whole flight: the search moves in coarse slides, and what it jerks the refinement smooths inside the same limits.
+A job is frozen and picklable, and its `run` may be called in any thread or process. It searches
+(`fullpose.trajectory.beam_search`), which decides the way round, and then refines what was found
+(`fullpose.trajectory.sqp`), as `plan` does with a whole flight: the search moves in coarse slides, and what it jerks
+the refinement smooths inside the same limits.
 
 Source: mathematics, section 9.
 """
@@ -17,10 +18,11 @@ from fullpose.limits import limit_table
 from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import attitudes_ahead
 from fullpose.rig import Rig
-from fullpose.trajectory.beam_search import search
+from fullpose.trajectory.beam_search import Stages, Start, search
 from fullpose.trajectory.curve import closest_all
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.sqp import refine
+from fullpose.trajectory.stage_cost import Costs
 
 START_BEAM = 1000  # states kept a stage then: the way begins anywhere
 HOME_COST = 1e-3  # [1/(rad^2 s)]: decides where nothing else does
@@ -91,18 +93,15 @@ class Replan:
             self.known_time, self.known_attitude, time, FIT_WINDOW, o.settling_s, 0.5 * o.stage_s, attitude
         )
         trust: Array = np.exp(-np.maximum(0.0, time - time[known - 1]) / o.foresight_s)
-        weights = np.array(
-            [
-                o.rate_cost, o.acceleration_cost, o.singularity_cost, o.range_cost, o.excess_cost, o.end_cost,
-                HOME_COST, o.room_cost, o.room_s, ROOM_FOR,
-            ]
+        costs = Costs(
+            float(o.rate_cost), float(o.acceleration_cost), float(o.singularity_cost), float(o.range_cost),
+            float(o.excess_cost), HOME_COST, float(o.end_cost), float(o.room_cost), float(o.room_s), ROOM_FOR,
         )  # fmt: skip
-        table = limit_table(self.tight)
         pose = np.empty((count + 1, 4))
         beam = o.beam if len(self.pose) == 1 else START_BEAM
         _, over = search(
-            self.tight.geometry.horizontal, table, weights, time, attitude, trust, self.past, self.pose, self.rate,
-            o.slides, beam, pose,
+            self.tight.geometry.horizontal, limit_table(self.tight), costs, Stages(time, attitude, trust),
+            Start(self.pose, self.rate, float(self.past)), o.slides, beam, pose,
         )  # fmt: skip
         return time, pose, known, over
 

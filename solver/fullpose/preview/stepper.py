@@ -38,7 +38,7 @@ from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import Track
 from fullpose.preview.replan import FIT_WINDOW, Ahead, Replan
 from fullpose.rig import Rig
-from fullpose.trajectory.nodes import fill_nodes, grid_circle
+from fullpose.trajectory.nodes import empty_nodes, fill_nodes, node_grid
 
 START_GRID = 60  # nodes a turn among which a free start is chosen
 
@@ -188,11 +188,8 @@ class PreviewStepper(LimitedStepper):
 def start_nodes(rig: Rig, table: Array, attitude: Array) -> Array:
     """Exact poses (m, 4) [rad] for one attitude, inside the position limits, all round both charts, near home."""
     low = np.where(np.isfinite(table[MIN]) & (table[MAX] - table[MIN] < 2.0 * math.pi), table[MIN], rig.home - math.pi)
-    n = 4 * START_GRID
-    position, measure, alive = np.zeros((n, 4)), np.ones(n), np.zeros(n, np.bool_)
-    cosines, sines = grid_circle(START_GRID)
-    fill_nodes(
-        rig.geometry.horizontal, np.ascontiguousarray(attitude), cosines, sines, low, table[MAX].copy(),
-        position, measure, alive,
-    )  # fmt: skip
-    return np.ascontiguousarray(position[alive & (position >= table[MIN]).all(axis=1)])
+    nodes = empty_nodes(START_GRID)
+    grid = node_grid(START_GRID, low, table[MAX].copy())
+    fill_nodes(rig.geometry.horizontal, np.ascontiguousarray(attitude), grid, nodes)
+    inside = nodes.alive & (nodes.position >= table[MIN]).all(axis=1)
+    return np.ascontiguousarray(nodes.position[inside])

@@ -11,97 +11,74 @@ one that exceeds least and latest.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fullpose._jit import kernel
-from fullpose._typing import Array
+from fullpose._jit import inner, kernel
+from fullpose._typing import Array, Counts
 from fullpose.charts import TURN, project
-from fullpose.limits import ACCELERATION, HOME, MAX, MIN, RATE, WEIGHT, empty_box, limit_box, tolerances
+from fullpose.kinematics import self_motion
+from fullpose.limits import WEIGHT, Box, empty_box, limit_box, tolerances
 from fullpose.step import clamp, null_interval
-
-# Indices of the weights of the cost, one array
-RATES, ACCELERATIONS, SINGULARITY, RANGES, EXCESS, AT_END, HOMING, ROOM, ROOM_TIME, ROOM_RATE = range(10)
-WEIGHTS = 10
+from fullpose.trajectory.stage_cost import Costs, Stage, Task, pose_cost, step_cost
 
 PLACES = 90  # cells a turn of the place along the curve
 SPEEDS = 60  # cells of the rate along it, between -FASTEST and FASTEST: finer than one stage can change it
 FASTEST = math.radians(480.0)  # [rad/s]; what is faster shares the last cell
 WIDEST = math.radians(30.0)  # [rad] a slide in one stage where no limit bounds it
 FREE_SLIDES = 8  # times as many slides where the first rate is free
-UNLIMITED = 20.0  # [rad/s] of a frame without a rate limit, in the room
-CLEAR = 0.05  # beside sin^2 d2 + cos^2 d3 in the cost: where its rise ends
-NEAR_STOP = 0.02  # share of a range beside the room left in the cost
 
 
-@kernel
-def room(horizontal: bool, table: Array, d: Array, ahead: float) -> float:
-    """The body rate that could be followed for `ahead` [s] from d, whatever its direction [rad/s].
+class Stages(NamedTuple):
+    """What the way must meet."""
 
-    The frame rates that the rate limits and the ranges allow for so long make a box; the body rates J v of a box are a
-    zonotope, and the answer is the radius of the ball inside it: the least support over the normals of its faces, which
-    are the cross products of two columns of J. Zero at the singularity, and on an end stop that matters.
-    """
-    s2 = -math.sin(d[1]) if horizontal else math.sin(d[1])
-    c2 = math.cos(d[1])
-    s3 = math.sin(d[2])
-    c3 = math.cos(d[2])
-    # Columns of R4^T J, as the vertical rig has them.
-    column = ((c3 * s2, c2, s3 * s2), (-s3, 0.0, c3), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
-    low = np.empty(4)
-    high = np.empty(4)
-    for i in range(4):
-        low[i] = min(table[RATE, i], (d[i] - table[MIN, i]) / ahead, UNLIMITED)
-        high[i] = min(table[RATE, i], (table[MAX, i] - d[i]) / ahead, UNLIMITED)
-    if horizontal:
-        low[1], high[1] = high[1], low[1]
-    least = np.inf
-    for i in range(4):
-        for j in range(i):
-            a = column[i]
-            b = column[j]
-            x = a[1] * b[2] - a[2] * b[1]
-            y = a[2] * b[0] - a[0] * b[2]
-            z = a[0] * b[1] - a[1] * b[0]
-            size = math.sqrt(x * x + y * y + z * z)
-            if size < 1e-6:
-                continue
-            up = 0.0
-            down = 0.0
-            for k in range(4):
-                p = (x * column[k][0] + y * column[k][1] + z * column[k][2]) / size
-                if p > 0.0:
-                    up += p * high[k]
-                    down += p * low[k]
-                else:
-                    up -= p * low[k]
-                    down -= p * high[k]
-            least = min(least, up, down)
-    return max(least, 0.0)
+    time: Array  # (k,) [s]
+    attitude: Array  # (k, 3, 3)
+    trust: Array  # (k,) weighs a stage's cost
 
 
-@kernel
-def pose_cost(horizontal: bool, table: Array, weights: Array, d: Array) -> float:
-    """What a pose costs a second: little room, nearness of the singularity and of the end stops, distance from home."""
-    s2 = math.sin(d[1])
-    c3 = math.cos(d[2])
-    clear = s2 * s2 + c3 * c3
-    total = -float(weights[SINGULARITY]) * math.log((clear + CLEAR) / (2.0 + CLEAR))
-    for i in range(4):
-        half = 0.5 * (table[MAX, i] - table[MIN, i])
-        if half > 0.0 and half < np.inf:
-            u = (d[i] - table[MIN, i]) / half - 1.0
-            u *= u
-            total += weights[RANGES] * u * u / max(1.0 + NEAR_STOP - u, NEAR_STOP)
-            off = d[i] - table[HOME, i]
-            total += weights[HOMING] * off * off
-    if weights[ROOM] > 0.0:
-        share = weights[ROOM_RATE] / (room(horizontal, table, d, weights[ROOM_TIME]) + 0.1 * weights[ROOM_RATE])
-        total += weights[ROOM] * share * share
-    return total
+class Start(NamedTuple):
+    """Where the way may begin."""
+
+    pose: Array  # (m, 4) [rad]
+    rate: Array  # (m, 4) [rad/s] over the interval `past`
+    past: float  # [s] just past; 0: any rate may follow
 
 
-@kernel
+class Kept(NamedTuple):
+    """The states kept: of each stage where they are and came from, of the last one their rates and costs."""
+
+    pose: Array  # (k, width, 4) [rad]
+    parent: Counts  # (k, width) the state of the stage before
+    over: NDArray[np.bool_]  # (k, width) whether a limit is exceeded on the way there
+    rate: Array  # (width, 4) [rad/s]
+    cost: Array  # (width,)
+
+
+class Found(NamedTuple):
+    """The states found for a stage, one a cell at most."""
+
+    pose: Array  # (space, 4) [rad]
+    rate: Array  # (space, 4) [rad/s]
+    cost: Array  # (space,)
+    parent: Counts  # (space,)
+    over: NDArray[np.bool_]  # (space,)
+    place: Counts  # (cells,) where a cell's state is; -1: it has none
+
+
+class Scratch(NamedTuple):
+    """Room for one state's slides."""
+
+    box: Box
+    tolerance: Array  # (4,) [rad]
+    coast: Array  # (4,) [rad] the pose that keeps the rate, put on the curve
+    null: Array  # (4,) the curve's direction there
+    x: Array  # (4,) [rad] a slide's end
+
+
+@inner
 def cell_of(d: Array, along: float) -> int:
     """The cell of a pose with the rate `along` its self-motion [rad/s]."""
     c3 = math.cos(d[2])
@@ -117,159 +94,169 @@ def cell_of(d: Array, along: float) -> int:
     return int((chart * PLACES + place) * SPEEDS + min(max(speed, 0), SPEEDS - 1))
 
 
+@inner
+def slide_range(task: Task, stage: Stage, here: Array, rate: Array, room_for: Scratch) -> tuple[float, float, float]:
+    """box, coast, null <- of the state; returns (the slide that coasts, the least and the most one inside the box).
+
+    The least is above the most where none is inside; the one that coasts then shares the excess.
+    """
+    table = task.table
+    y = room_for.coast
+    n = room_for.null
+    x = room_for.x
+    limit_box(table, here, rate, stage.past, stage.ahead, room_for.box)
+    for i in range(4):
+        x[i] = here[i] + rate[i] * stage.ahead
+    project(task.horizontal, stage.attitude, x, y)
+    self_motion(task.horizontal, y, n)
+    along = 0.0
+    norm = 0.0
+    for i in range(4):
+        n[i] = -n[i]
+        along += n[i] * table[WEIGHT, i] * (x[i] - y[i])
+        norm += n[i] * n[i] * table[WEIGHT, i]
+    z_min, z_max = null_interval(y, n, room_for.box.lo, room_for.box.hi, room_for.tolerance)
+    coast = clamp(along / norm if norm > 0.0 else 0.0, z_min, z_max)
+    if z_min <= z_max:
+        return coast, max(z_min, coast - WIDEST), min(z_max, coast + WIDEST)
+    return coast, z_min, z_max
+
+
+@inner
+def offer(found: Found, count: int, cell: int, x: Array, cost: float, parent: int, over: bool) -> int:
+    """Keep the state x, whose rate is in row `count`, if it is the cheapest of its cell; returns the new count."""
+    place = found.place[cell]
+    following = count
+    if place < 0:
+        place = count
+        found.place[cell] = place
+        following = count + 1
+    elif found.cost[place] <= cost:
+        return count
+    else:
+        for i in range(4):
+            found.rate[place, i] = found.rate[count, i]
+    for i in range(4):
+        found.pose[place, i] = x[i]
+    found.cost[place] = cost
+    found.parent[place] = parent
+    found.over[place] = over
+    return following
+
+
+@inner
+def expand(task: Task, stage: Stage, kept: Kept, state: int, room_for: Scratch, found: Found, count: int) -> int:
+    """found <- the slides from one state of the stage before; returns how many states were found by now."""
+    here = kept.pose[stage.number - 1, state]
+    rate = kept.rate[state]
+    x = room_for.x
+    h = stage.ahead
+    coast, z_min, z_max = slide_range(task, stage, here, rate, room_for)
+    inside = z_min <= z_max
+    for t in range(-1, stage.slides if inside else 0):
+        z = coast if t < 0 else z_min + (z_max - z_min) * t / (stage.slides - 1)
+        for i in range(4):
+            x[i] = room_for.coast[i] + room_for.null[i] * z
+        project(task.horizontal, stage.attitude, x, x)
+        new_rate = found.rate[count]
+        along = 0.0
+        for i in range(4):
+            new_rate[i] = (x[i] - here[i]) / h
+            along += new_rate[i] * room_for.null[i]
+        cost, over = step_cost(task, stage, rate, new_rate, x, room_for.box)
+        excess = task.costs.excess
+        total = kept.cost[state] + stage.trust * (h * cost + excess * min(over, 10.0) * h)
+        if over > 0.0:
+            total += stage.trust * excess * h
+        count = offer(found, count, cell_of(x, along), x, total, state, over > 0.0)
+    return count
+
+
+@kernel
+def keep_cheapest(found: Found, count: int, beam: int, stage: int, kept: Kept) -> int:
+    """kept <- the cheapest `beam` of the states found for a stage; returns how many."""
+    order = np.argsort(found.cost[:count])
+    width = min(count, beam)
+    for b in range(width):
+        place = order[b]
+        for i in range(4):
+            kept.pose[stage, b, i] = found.pose[place, i]
+            kept.rate[b, i] = found.rate[place, i]
+        kept.cost[b] = found.cost[place]
+        kept.parent[stage, b] = found.parent[place]
+        kept.over[stage, b] = found.over[place]
+    return width
+
+
+@kernel
+def room_to_keep(start: Start, stages: int, width: int) -> Kept:
+    """The states of the start, and room for `width` a stage."""
+    kept = Kept(
+        np.empty((stages, width, 4)), np.zeros((stages, width), np.int32), np.zeros((stages, width), np.bool_),
+        np.empty((width, 4)), np.empty(width),
+    )  # fmt: skip
+    for b in range(start.pose.shape[0]):
+        for i in range(4):
+            kept.pose[0, b, i] = start.pose[b, i]
+            kept.rate[b, i] = start.rate[b, i]
+        kept.cost[b] = 0.0
+    return kept
+
+
+@inner
+def trace(kept: Kept, state: int, poses: Array) -> int:
+    """poses (k, 4) <- the way to a state of the last stage; returns the first stage over a limit, or k."""
+    over = poses.shape[0]
+    for stage in range(poses.shape[0] - 1, -1, -1):
+        for i in range(4):
+            poses[stage, i] = kept.pose[stage, state, i]
+        if kept.over[stage, state]:
+            over = stage
+        state = int(kept.parent[stage, state])
+    return int(over)
+
+
 @kernel
 def search(
-    horizontal: bool,
-    table: Array,
-    weights: Array,
-    time: Array,
-    attitude: Array,
-    trust: Array,
-    past: float,
-    first: Array,
-    first_rate: Array,
-    slides: int,
-    beam: int,
-    poses: Array,
+    horizontal: bool, table: Array, costs: Costs, stages: Stages, start: Start, slides: int, beam: int, poses: Array
 ) -> tuple[float, int]:
     """poses (k, 4) <- the cheapest way found; returns (cost, first stage over a limit or k).
 
-    time (k,) [s] and attitude (k, 3, 3) of the stages; trust (k,) weighs a stage's cost. The way starts at one of
-    `first` (m, 4) [rad] with its rate (m, 4) [rad/s] over the interval `past` [s] just past (0: any rate may follow).
+    table (6, 4): `limits.limit_table`; slides: tried from each state; beam: states kept a stage.
     """
+    time = stages.time
     k = time.shape[0]
-    m = first.shape[0]
+    m = start.pose.shape[0]
     width = max(beam, m)
-    d = np.empty((k, width, 4))
-    parent = np.zeros((k, width), np.int32)
-    excess_at = np.zeros((k, width), np.bool_)
-    v = np.empty((width, 4))
-    cost = np.empty(width)
-    for b in range(m):
-        for i in range(4):
-            d[0, b, i] = first[b, i]
-            v[b, i] = first_rate[b, i]
-        cost[b] = 0.0
-    count = m
+    task = Task(horizontal, table, costs)
+    kept = room_to_keep(start, k, width)
     # A first rate that is free is chosen finely: inertia keeps it for a while.
-    begin_slides = slides if past > 0.0 else FREE_SLIDES * slides
+    begin_slides = slides if start.past > 0.0 else FREE_SLIDES * slides
     space = max(width * (slides + 1), m * (begin_slides + 1))
-    new_d = np.empty((space, 4))
-    new_v = np.empty((space, 4))
-    new_cost = np.empty(space)
-    new_parent = np.empty(space, np.int32)
-    new_over = np.empty(space, np.bool_)
-    table_of = np.empty(4 * PLACES * SPEEDS, np.int32)
-    box = empty_box()
-    lo = box.lo
-    hi = box.hi
-    tolerance = np.empty(4)
-    y = np.empty(4)
-    x = np.empty(4)
-    n = np.empty(4)
-    side = 1.0 if horizontal else -1.0
-    for stage in range(1, k):
-        h = time[stage] - time[stage - 1]
-        before = past if stage == 1 else time[stage - 1] - time[stage - 2]
+    found = Found(
+        np.empty((space, 4)), np.empty((space, 4)), np.empty(space), np.empty(space, np.int32),
+        np.empty(space, np.bool_), np.empty(4 * PLACES * SPEEDS, np.int32),
+    )  # fmt: skip
+    room_for = Scratch(empty_box(), np.empty(4), np.empty(4), np.empty(4), np.empty(4))
+    count = m
+    for number in range(1, k):
         # The first interval past is a sample's, short; the rate it had changes over half of both.
-        tolerances(table, before, h, tolerance)
-        table_of[:] = -1
+        past = start.past if number == 1 else time[number - 1] - time[number - 2]
+        stage = Stage(
+            number, stages.attitude[number], stages.trust[number], time[number] - time[number - 1], past,
+            begin_slides if number == 1 else slides,
+        )  # fmt: skip
+        tolerances(table, past, stage.ahead, room_for.tolerance)
+        found.place[:] = -1
         filled = 0
         for b in range(count):
-            here = d[stage - 1, b]
-            limit_box(table, here, v[b], before, h, box)
-            for i in range(4):
-                x[i] = here[i] + v[b, i] * h
-            project(horizontal, attitude[stage], x, y)
-            s2 = math.sin(y[1])
-            c2 = math.cos(y[1])
-            s3 = math.sin(y[2])
-            c3 = math.cos(y[2])
-            n[0] = c3
-            n[1] = -s2 * s3
-            n[2] = -c2 * c3
-            n[3] = side * s2
-            size = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3])
-            along = 0.0
-            norm = 0.0
-            for i in range(4):
-                n[i] = n[i] / size if size > 0.0 else 0.0
-                along += n[i] * table[WEIGHT, i] * (x[i] - y[i])
-                norm += n[i] * n[i] * table[WEIGHT, i]
-            z_min, z_max = null_interval(y, n, lo, hi, tolerance)
-            coast = along / norm if norm > 0.0 else 0.0
-            inside = z_min <= z_max
-            if inside:
-                coast = clamp(coast, z_min, z_max)
-                z_min = max(z_min, coast - WIDEST)
-                z_max = min(z_max, coast + WIDEST)
-            else:
-                coast = clamp(coast, z_min, z_max)
-            most = begin_slides if stage == 1 else slides
-            tries = most if inside else 0
-            for t in range(-1, tries):
-                z = coast if t < 0 else z_min + (z_max - z_min) * t / (most - 1)
-                for i in range(4):
-                    x[i] = y[i] + n[i] * z
-                project(horizontal, attitude[stage], x, x)
-                dear = 0.0
-                over = 0.0
-                speed = 0.0
-                for i in range(4):
-                    rate = (x[i] - here[i]) / h
-                    new_v[filled, i] = rate
-                    speed += rate * n[i]
-                    share = rate / table[RATE, i]
-                    dear += weights[RATES] * share * share
-                    if before > 0.0:
-                        change = (rate - v[b, i]) / (0.5 * (before + h) * table[ACCELERATION, i])
-                        dear += weights[ACCELERATIONS] * change * change
-                    out = max(lo[i] - x[i], x[i] - hi[i])
-                    if out > 0.0:
-                        out /= min(0.5 * table[ACCELERATION, i] * h * h, table[RATE, i] * h, 1.0)
-                        over += max(0.0, out - 0.02)
-                dear += pose_cost(horizontal, table, weights, x)
-                total = cost[b] + trust[stage] * (h * dear + weights[EXCESS] * min(over, 10.0) * h)
-                if over > 0.0:
-                    total += trust[stage] * weights[EXCESS] * h
-                cell = cell_of(x, speed)
-                slot = table_of[cell]
-                if slot < 0:
-                    slot = filled
-                    table_of[cell] = slot
-                    filled += 1
-                elif new_cost[slot] <= total:
-                    continue
-                else:
-                    for i in range(4):
-                        new_v[slot, i] = new_v[filled, i]
-                for i in range(4):
-                    new_d[slot, i] = x[i]
-                new_cost[slot] = total
-                new_parent[slot] = b
-                new_over[slot] = over > 0.0
-        order = np.argsort(new_cost[:filled])
-        count = min(filled, beam)
-        for b in range(count):
-            slot = order[b]
-            for i in range(4):
-                d[stage, b, i] = new_d[slot, i]
-                v[b, i] = new_v[slot, i]
-            cost[b] = new_cost[slot]
-            parent[stage, b] = new_parent[slot]
-            excess_at[stage, b] = new_over[slot]
+            filled = expand(task, stage, kept, b, room_for, found, filled)
+        count = keep_cheapest(found, filled, beam, number, kept)
     best = 0
     least = np.inf
     for b in range(count):
-        total = cost[b] + weights[AT_END] * trust[k - 1] * pose_cost(horizontal, table, weights, d[k - 1, b])
+        total = kept.cost[b] + costs.at_end * stages.trust[k - 1] * pose_cost(task, kept.pose[k - 1, b])
         if total < least:
             least = total
             best = b
-    over_stage = k
-    for stage in range(k - 1, -1, -1):
-        for i in range(4):
-            poses[stage, i] = d[stage, best, i]
-        if excess_at[stage, best]:
-            over_stage = stage
-        best = parent[stage, best]
-    return least, over_stage
+    return least, trace(kept, best, poses)

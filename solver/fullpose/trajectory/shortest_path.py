@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from fullpose._typing import Array, Counts, Integers, Progress
 from fullpose.charts import TURN
 from fullpose.rig import Rig
-from fullpose.trajectory.nodes import Lattice, fill_nodes, grid_circle
+from fullpose.trajectory.nodes import Lattice, empty_nodes, fill_node, fill_nodes
 from fullpose.trajectory.options import PlanOptions
-from fullpose.trajectory.shortest_path_kernels import advance, nearest_crossing, node_costs, single
+from fullpose.trajectory.shortest_path_kernels import Edges, Stage, Turns, advance, nearest_crossing, node_costs
 
 REFERENCE_RATE = math.pi  # [rad/s] stands in for the limit, in costs only, where no frame has one
 BACK_BYTES = 128 << 20  # of back-pointers held at once
@@ -72,7 +72,8 @@ class Programme:
         """time (k,) [s] and attitude (k, 3, 3) of the stages; `slack` [rad] widens every edge and range."""
         self.time, self.attitude, self.rig, self.grid, self.options = time, attitude, rig, grid, options
         self.slack = slack
-        self.cosines, self.sines = grid_circle(grid.size)
+        self._nodes = grid.nodes
+        self._turns = Turns(grid.high, grid.wraps, grid.copies, int(np.prod(grid.copies)))
         self.rates = reference_rates(rig)
         self.stretch = 1.0
         self.excess = 0.0
@@ -84,20 +85,15 @@ class Programme:
         self._unlimited = longest > 0.0 and bool((rig.max_rate * longest >= math.pi).any())
         self.room_cost = 0.0  # on ranges nearly used up at the last stage, for a flight that goes on after it
 
-    def nodes(self, stage: int) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """(position (4G, 4), cost (4G,), alive (4G,)) of a stage."""
-        n = 4 * self.grid.size
-        position = np.zeros((n, 4))
-        measure = np.ones(n)
-        alive = np.zeros(n, np.bool_)
-        fill_nodes(
-            self.grid.horizontal, self.attitude[stage], self.cosines, self.sines, self.grid.low, self.grid.high,
-            position, measure, alive,
-        )  # fmt: skip
+    def nodes(self, stage: int) -> Stage:
+        """The nodes of a stage."""
+        nodes = empty_nodes(self.grid.size)
+        fill_nodes(self.grid.horizontal, self.attitude[stage], self._nodes, nodes)
+        position, alive = nodes.position, nodes.alive
         o = self.options
-        cost = np.empty(n)
+        cost = np.empty(len(position))
         node_costs(
-            position, measure, self.rig.home, self.grid.wraps.astype(float), o.home_cost,
+            position, nodes.measure, self.rig.home, self.grid.wraps.astype(float), o.home_cost,
             o.singularity_margin * self.margin_gain, o.singularity_cost * self.margin_gain, cost,
         )  # fmt: skip
         for place in self.avoid:
@@ -115,7 +111,7 @@ class Programme:
             middle = 0.5 * (self.grid.low[finite] + self.grid.high[finite])
             used = (position[:, finite] - middle) / (self.grid.high[finite] - middle)
             cost += self.room_cost * (used**4).sum(axis=1)
-        return position, cost, alive
+        return Stage(position, cost, alive)
 
     def _inertia(self, stage: int, position: Array) -> tuple[Array, Array]:
         """(gap (m, 4), reach (4,)) [rad]: how far from coasting at the first stage's rates, and how far it may be."""
@@ -135,10 +131,9 @@ class Programme:
     def run(self, start: Array | None = None, progress: Progress | None = None) -> NodePath:
         """The cheapest node path from the nodes next to `start` (4,) [rad], or from any."""
         grid, n = self.grid, len(self.time)
-        W = int(np.prod(grid.copies))
         block = max(64, BACK_BYTES // (4 * grid.states))
         position, cost, alive = self.nodes(0)
-        costs = self._first(position, cost, alive, start, W)
+        costs = self._first(position, cost, alive, start)
         if not np.isfinite(costs).any():
             return NodePath(np.empty((0, 4)), math.inf, 0, *self._closed_by_position(0))
         checkpoints = [(0, costs, position)]
@@ -166,9 +161,10 @@ class Programme:
                     where, at = again
             for stage in range(last, first, -1):
                 path[stage - 1] = back[(stage - 1) % block][path[stage]]
-        return NodePath(self._unwrapped(path, W, start), float(costs[final]), n)
+        return NodePath(self._unwrapped(path, start), float(costs[final]), n)
 
-    def _first(self, position: Array, cost: Array, alive: NDArray[np.bool_], start: Array | None, W: int) -> Array:
+    def _first(self, position: Array, cost: Array, alive: NDArray[np.bool_], start: Array | None) -> Array:
+        W = self._turns.total
         costs = np.full((len(position), W), math.inf)
         turns = np.array(np.unravel_index(np.arange(W), self.grid.copies)).T  # (W, 4)
         lifted = position[:, None, :] + TURN * turns[None]
@@ -199,26 +195,19 @@ class Programme:
 
     def _step(self, stage: int, position: Array, costs: Array, back: Counts) -> tuple[Array, Array] | None:
         dt = self.time[stage] - self.time[stage - 1]
-        ahead, node_cost, alive = self.nodes(stage)
+        ahead, reach = self.nodes(stage), self._reach(stage)
+        edges = Edges(reach, reach * self.stretch, float(self.excess), self.rig.weight / (self.rates**2 * dt))
         after = np.empty_like(costs)
-        weight = self.rig.weight / (self.rates**2 * dt)
-        reached = advance(
-            position, costs, ahead, alive, node_cost, self._reach(stage), self.stretch, self.excess, weight,
-            self.grid.high, self.grid.wraps, self.grid.copies, after, back,
-        )  # fmt: skip
-        return (ahead, after) if reached else None
+        reached = advance(position, costs, ahead, edges, self._turns, after, back)
+        return (ahead.position, after) if reached else None
 
     def _closed_by_position(self, stage: int) -> tuple[int, int]:
         """(frame, 0): the frame whose range lies farthest from the nearest node of a stage that has none."""
-        n = 4 * self.grid.size
-        position, measure, alive = np.zeros((n, 4)), np.ones(n), np.zeros(n, np.bool_)
-        wide = np.full(4, math.inf)
-        fill_nodes(
-            self.grid.horizontal, self.attitude[stage], self.cosines, self.sines, self.grid.low, wide,
-            position, measure, alive,
-        )  # fmt: skip
-        over = position - self.grid.high
-        over = np.minimum(over, self.grid.low + TURN - position)[alive]  # to the nearer end of the range
+        nodes = empty_nodes(self.grid.size)
+        wide = self._nodes._replace(high=np.full(4, math.inf))
+        fill_nodes(self.grid.horizontal, self.attitude[stage], wide, nodes)
+        over = nodes.position - self.grid.high
+        over = np.minimum(over, self.grid.low + TURN - nodes.position)[nodes.alive]  # to the nearer end of the range
         best = over[np.argmin(over.max(axis=1))]
         return int(np.argmax(best)), 0
 
@@ -236,27 +225,22 @@ class Programme:
         return int(np.argmax(over[np.argmin(over.max(axis=1))])), 2
 
     def _closed_by(self, stage: int, position: Array, costs: Array) -> tuple[int, int]:
-        ahead, _, alive = self.nodes(stage)
-        if not alive.any():
+        ahead = self.nodes(stage)
+        if not ahead.alive.any():
             return self._closed_by_inertia(stage) or self._closed_by_position(stage)
-        frame, ratio = nearest_crossing(position, costs, ahead, alive, self.grid.wraps, self._reach(stage))
+        frame, ratio = nearest_crossing(position, costs, ahead, self.grid.wraps, self._reach(stage))
         if ratio <= 1.0:  # only the count of turns kept the edge away: the range, then
             finite = np.isfinite(self.grid.high)
             return int(np.argmax(finite)), 0
         return frame, 1
 
-    def _unwrapped(self, path: Integers, W: int, start: Array | None) -> Array:
+    def _unwrapped(self, path: Integers, start: Array | None) -> Array:
         """The angles of a path of states (k, 4), continuous, in their counted turns, else the turn nearest home."""
-        n = len(path)
+        n, W = len(path), self._turns.total
         angles = np.empty((n, 4))
         turns = np.array(np.unravel_index(path % W, self.grid.copies)).T
-        node = path // W
-        G = self.grid.size
         for stage in range(n):
-            single(
-                self.grid.horizontal, self.attitude[stage], node[stage] // G, self.cosines[node[stage] % G],
-                self.sines[node[stage] % G], node[stage] % G, G, self.grid.low, angles[stage],
-            )  # fmt: skip
+            fill_node(self.grid.horizontal, self.attitude[stage], self._nodes, path[stage] // W, angles[stage])
         angles += TURN * turns
         wraps = self.grid.wraps
         if n > 1:

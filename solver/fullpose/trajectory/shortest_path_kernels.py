@@ -1,133 +1,176 @@
-"""Kernels of the dynamic programme: one stage of it, the costs of nodes, the frontier, and one node alone."""
+"""Kernels of the dynamic programme: one stage of it, the costs of nodes, the edge that is least over its reach."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fullpose._jit import kernel
+from fullpose._jit import inlined, kernel
 from fullpose._typing import Array, Counts, Integers
 from fullpose.charts import TURN
-from fullpose.trajectory.nodes import fill_nodes
+
+
+class Stage(NamedTuple):
+    """The nodes of one instant, and what each of them costs."""
+
+    position: Array  # (4G, 4) [rad]
+    cost: Array  # (4G,)
+    alive: NDArray[np.bool_]  # (4G,)
+
+
+class Edges(NamedTuple):
+    """What an edge between two stages may span, and its price."""
+
+    reach: Array  # (4,) [rad] what the rate limits allow
+    window: Array  # (4,) [rad] what is taken, `excess` paid for each (overrun as a share of the reach)^2
+    excess: float
+    weight: Array  # (4,) [1/rad^2] of the way squared
+
+
+class Turns(NamedTuple):
+    """Which frames' turns are told apart. States are node * prod(copies) + copy."""
+
+    high: Array  # (4,) [rad]
+    wraps: NDArray[np.bool_]  # (4,) frames whose turns are not counted
+    copies: Integers  # (4,)
+    total: int  # copies, of all frames together
+
+
+@inlined
+def edge_cost(
+    edges: Edges, turns: Turns, before: Array, i: int, after: Array, j: int, cost: float, shift: Integers
+) -> float:
+    """`cost` plus that of the edge from position before[i] to after[j], infinite where it is too long.
+
+    before, after (4G, 4) [rad]; shift (4,) <- the turns it goes up.
+    """
+    for k in range(4):
+        gap = after[j, k] - before[i, k]
+        turned = 0.0
+        if gap > math.pi or gap < -math.pi:
+            turned = np.rint(gap / TURN)
+            gap -= TURN * turned
+        size = abs(gap)
+        if size > edges.window[k]:
+            return np.inf
+        shift[k] = 0 if turns.wraps[k] else int(turned)
+        cost += edges.weight[k] * size * size
+        if size > edges.reach[k]:
+            over = size / edges.reach[k] - 1.0
+            cost += edges.excess * over * over
+    return cost
+
+
+@inlined
+def shifted(copy: int, shift: Integers, copies: Integers) -> int:
+    """The copy that lies `shift` (4,) turns from `copy`; -1 where there is none."""
+    c3 = copy % copies[3] + shift[3]
+    rest = copy // copies[3]
+    c2 = rest % copies[2] + shift[2]
+    rest //= copies[2]
+    c1 = rest % copies[1] + shift[1]
+    c0 = rest // copies[1] + shift[0]
+    if c0 < 0 or c1 < 0 or c2 < 0 or c3 < 0:
+        return -1
+    if c0 >= copies[0] or c1 >= copies[1] or c2 >= copies[2] or c3 >= copies[3]:
+        return -1
+    return int(((c0 * copies[1] + c1) * copies[2] + c2) * copies[3] + c3)
+
+
+@inlined
+def in_range(position: Array, j: int, copy: int, turns: Turns) -> bool:
+    """Whether node j is inside its ranges in that copy; position (4G, 4) [rad] is the lowest one's."""
+    inside = True
+    for k in range(3, -1, -1):
+        if position[j, k] + TURN * (copy % turns.copies[k]) > turns.high[k]:
+            inside = False
+        copy //= turns.copies[k]
+    return inside
+
+
+@inlined
+def relax(cost0: Array, i: int, cost1: Array, j: int, back: Counts, edge: float, shift: Integers, turns: Turns) -> None:
+    """cost1, back <- for the states of node j that the edge from node i, `shift` turns up, makes cheaper."""
+    W = turns.total
+    if W == 1:
+        if shift[0] == 0 and shift[1] == 0 and shift[2] == 0 and shift[3] == 0:
+            total = cost0[i] + edge
+            if total < cost1[j]:
+                cost1[j] = total
+                back[j] = i
+        return
+    for w in range(W):
+        copy = shifted(w, shift, turns.copies)
+        if copy < 0:
+            continue
+        total = cost0[i * W + copy] + edge
+        if total < cost1[j * W + w]:
+            cost1[j * W + w] = total
+            back[j * W + w] = i * W + copy
+
+
+@kernel
+def open_nodes(cost: Array, count: int) -> NDArray[np.bool_]:
+    """(count,) the nodes that have a state which was reached; cost (states,)."""
+    W = cost.shape[0] // count
+    found = np.zeros(count, np.bool_)
+    for i in range(count):
+        for w in range(W):
+            if cost[i * W + w] < np.inf:
+                found[i] = True
+                break
+    return found
+
+
+@inlined
+def points_within(span: float, G: int) -> int:
+    """Grid points to either side that lie within `span` [rad] of an angle."""
+    half = G // 2
+    return half if span >= math.pi else min(half, math.ceil(span / (TURN / G)) + 1)
 
 
 @kernel
 def advance(
-    position0: Array,
-    cost0: Array,
-    position1: Array,
-    alive1: NDArray[np.bool_],
-    node_cost: Array,
-    reach: Array,
-    stretch: float,
-    excess: float,
-    weight: Array,
-    high: Array,
-    wraps: NDArray[np.bool_],
-    copies: Integers,
-    cost1: Array,
-    back: Counts,
+    position0: Array, cost0: Array, stage: Stage, edges: Edges, turns: Turns, cost1: Array, back: Counts
 ) -> int:
     """One stage of the programme: cost1, back <- the best predecessor of every state; returns how many were reached.
 
-    States are node * prod(copies) + copy. reach (4,) [rad] is what the rate limits allow in the stage; up to
-    `stretch` times as much is taken at the price of `excess` per (overrun as a share)^2. weight (4,) [1/rad^2].
+    position0 (4G, 4) [rad] and cost0 (states,) are of the stage before.
     """
+    position1 = stage.position
     N = position1.shape[0]
+    W = turns.total
     G = N // 4
     step = TURN / G
-    W = cost1.shape[0] // N
-    stride3 = 1
-    stride2 = copies[3]
-    stride1 = stride2 * copies[2]
-    stride0 = stride1 * copies[1]
-    half = G // 2
-    radius = np.empty(2, np.int64)
-    window = np.empty(4)
-    for k in range(4):
-        window[k] = reach[k] * stretch
-    for chart in range(2):
-        span = window[0] if chart == 0 else window[3]
-        radius[chart] = half if span >= math.pi else min(half, math.ceil(span / step) + 1)
-    open0 = np.empty(N, np.bool_)
-    for i in range(N):
-        open0[i] = False
-        for w in range(W):
-            if cost0[i * W + w] < np.inf:
-                open0[i] = True
-                break
+    open0 = open_nodes(cost0, N)
     shift = np.empty(4, np.int64)
     reached = 0
     for j in range(N):
         for w in range(W):
             cost1[j * W + w] = np.inf
             back[j * W + w] = -1
-        if not alive1[j]:
+        if not stage.alive[j]:
             continue
         for chart in range(2):
-            angle = position1[j, 0] if chart == 0 else position1[j, 3]
-            centre = int(np.rint((angle + math.pi) / step))
-            last = radius[chart]
-            if 2 * last + 1 > G:
-                last = G - 1 - radius[chart]
-            for offset in range(-radius[chart], last + 1):
+            kept = 0 if chart == 0 else 3
+            radius = points_within(edges.window[kept], G)
+            centre = int(np.rint((position1[j, kept] + math.pi) / step))
+            last = radius if 2 * radius + 1 <= G else G - 1 - radius
+            for offset in range(-radius, last + 1):
                 g = (centre + offset) % G
                 for branch in range(2):
                     i = (2 * chart + branch) * G + g
                     if not open0[i]:
                         continue
-                    edge = node_cost[j]
-                    near = True
-                    for k in range(4):
-                        gap = position1[j, k] - position0[i, k]
-                        turns = 0.0
-                        if gap > math.pi or gap < -math.pi:
-                            turns = np.rint(gap / TURN)
-                            gap -= TURN * turns
-                        size = abs(gap)
-                        if size > window[k]:
-                            near = False
-                            break
-                        shift[k] = 0 if wraps[k] else int(turns)
-                        edge += weight[k] * size * size
-                        if size > reach[k]:
-                            over = size / reach[k] - 1.0
-                            edge += excess * over * over
-                    if not near:
-                        continue
-                    if W == 1:
-                        if shift[0] == 0 and shift[1] == 0 and shift[2] == 0 and shift[3] == 0:
-                            total = cost0[i] + edge
-                            if total < cost1[j]:
-                                cost1[j] = total
-                                back[j] = i
-                        continue
-                    for w in range(W):
-                        c0 = w // stride0 + shift[0]
-                        c1 = (w // stride1) % copies[1] + shift[1]
-                        c2 = (w // stride2) % copies[2] + shift[2]
-                        c3 = w % copies[3] + shift[3]
-                        if c0 < 0 or c1 < 0 or c2 < 0 or c3 < 0:
-                            continue
-                        if c0 >= copies[0] or c1 >= copies[1] or c2 >= copies[2] or c3 >= copies[3]:
-                            continue
-                        v = i * W + c0 * stride0 + c1 * stride1 + c2 * stride2 + c3 * stride3
-                        total = cost0[v] + edge
-                        if total < cost1[j * W + w]:
-                            cost1[j * W + w] = total
-                            back[j * W + w] = v
+                    edge = edge_cost(edges, turns, position0, i, position1, j, stage.cost[j], shift)
+                    if edge < np.inf:
+                        relax(cost0, i, cost1, j, back, edge, shift, turns)
         for w in range(W):
+            if W > 1 and not in_range(position1, j, w, turns):
+                cost1[j * W + w] = np.inf
             if cost1[j * W + w] < np.inf:
-                if W > 1:
-                    rest = w
-                    for k in range(4):
-                        stride = stride0 if k == 0 else stride1 if k == 1 else stride2 if k == 2 else stride3
-                        turn = rest // stride
-                        rest -= turn * stride
-                        if position1[j, k] + TURN * turn > high[k]:
-                            cost1[j * W + w] = np.inf
-                if cost1[j * W + w] < np.inf:
-                    reached += 1
+                reached += 1
     return reached
 
 
@@ -154,27 +197,23 @@ def node_costs(
 
 @kernel
 def nearest_crossing(
-    position0: Array, cost0: Array, position1: Array, alive1: NDArray[np.bool_], wraps: NDArray[np.bool_], reach: Array
+    position0: Array, cost0: Array, stage: Stage, wraps: NDArray[np.bool_], reach: Array
 ) -> tuple[int, float]:
     """(frame, ratio): of all edges between open and living nodes, the one least over its reach, and its worst frame."""
-    N = position1.shape[0]
-    W = cost0.shape[0] // N
+    N = stage.position.shape[0]
+    open0 = open_nodes(cost0, N)
     best = np.inf
     which = -1
     for i in range(N):
-        is_open = False
-        for w in range(W):
-            if cost0[i * W + w] < np.inf:
-                is_open = True
-        if not is_open:
+        if not open0[i]:
             continue
         for j in range(N):
-            if not alive1[j]:
+            if not stage.alive[j]:
                 continue
             worst = 0.0
             frame = -1
             for k in range(4):
-                gap = position1[j, k] - position0[i, k]
+                gap = stage.position[j, k] - position0[i, k]
                 if wraps[k]:
                     gap -= TURN * np.rint(gap / TURN)
                 ratio = abs(gap) / reach[k]
@@ -187,26 +226,3 @@ def nearest_crossing(
                 best = worst
                 which = frame
     return which, best
-
-
-@kernel
-def single(
-    horizontal: bool, C: Array, chart_branch: int, cosine: float, sine: float, g: int, G: int, low: Array, d: Array
-) -> None:
-    """d <- the one node of index (chart_branch, g); as `fill_nodes` has it."""
-    position = np.empty((4, 4))
-    measure = np.empty(4)
-    alive = np.empty(4, np.bool_)
-    cosines = np.empty(1)
-    sines = np.empty(1)
-    cosines[0] = cosine
-    sines[0] = sine
-    high = np.full(4, np.inf)
-    fill_nodes(horizontal, C, cosines, sines, low, high, position, measure, alive)
-    # A grid of one point is labelled -pi: put the chart's own angle back.
-    frame = 0 if chart_branch < 2 else 3
-    angle = -math.pi + TURN / G * g
-    for k in range(4):
-        d[k] = position[chart_branch, k]
-    gap = angle - low[frame]
-    d[frame] = low[frame] + gap - TURN * math.floor(gap / TURN)

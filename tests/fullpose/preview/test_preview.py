@@ -22,7 +22,7 @@ from fullpose.preview.stepper import PreviewStepper, start_nodes
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import DEG, SCENARIOS, random_flight
 from fullpose.solve import solve
-from fullpose.trajectory.beam_search import room
+from fullpose.trajectory.stage_cost import room
 from fullpose.verify import attitude_errors, payload_attitudes, verify
 
 RIGS = builtin_rigs()

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
-from fullpose.trajectory.nodes import OVERLAP, fill_nodes, grid_circle, lattice
+from fullpose.trajectory.nodes import OVERLAP, empty_nodes, fill_nodes, lattice
 from fullpose.verify import payload_attitudes
 
 RIGS = builtin_rigs()
@@ -15,12 +15,9 @@ DEG = np.pi / 180.0
 
 
 def nodes_of(rig, C, grid):
-    cosines, sines = grid_circle(grid.size)
-    n = 4 * grid.size
-    position, measure, alive = np.zeros((n, 4)), np.ones(n), np.zeros(n, bool)
-    count = fill_nodes(grid.horizontal, C, cosines, sines, grid.low, grid.high, position, measure, alive)
-    assert count == alive.sum()
-    return position, measure, alive
+    nodes = empty_nodes(grid.size)
+    assert fill_nodes(grid.horizontal, C, grid.nodes, nodes) == nodes.alive.sum()
+    return nodes
 
 
 @pytest.mark.parametrize("name", ["vertical-4", "horizontal-4", "vertical-limited"])

@@ -111,7 +111,7 @@ class Motion:
     def hold(self, on: bool) -> None:
         """Slow down to a hold on the path, or back to full speed."""
         assert self.player is not None
-        self.player.wanted = 0.0 if on else 1.0
+        self.player.scale_to(0.0 if on else 1.0)
 
     def follow(self, live: LiveFollower) -> None:
         """Follow a live source."""

@@ -6,6 +6,7 @@ closed-form charts, so that the attitude stays exact throughout.
 """
 
 import math
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,6 @@ from fullpose.kinematics import payload_attitude, rotation_error
 from fullpose.rig import Rig
 from fullpose_server.formats.plan_folder import PlanFolder
 
-# Rows of the player's state: place on the path [samples], time scale, its rate of change [1/s].
-PLACE, SCALE, SCALE_RATE = 0, 1, 2
 _EXACT = 1e-9  # [rad] a sample solved better than this lies on the solution curve
 _SNAP = 1e-7  # [samples] closer than this to a whole sample is that sample
 _SLIP = 10.0  # [1/s] how fast the phase slips back onto whole samples
@@ -64,95 +63,129 @@ def _cubic(rows: Array, i: int, f: float, first: int, last: int, out: Array) -> 
         out[k] = p1 + f * (0.5 * (p2 - p0) + f * (b + f * a))
 
 
-@kernel
-def evaluate(
-    angles: Array,
-    target: Array,
-    error: Array,
-    first: int,
-    last: int,
-    chart: int,
-    s: float,
-    x: Array,
-    q: Array,
-) -> bool:
-    """x, q <- angles [rad] and attitude at place s [samples]; returns whether s lies in the flight.
+class Path(NamedTuple):
+    """A plan's rows: the flight is `first`..`last` of them, the rest are leads."""
 
-    angles, target (n, 4), error (n,); the flight is rows first..last; chart is 0 for a rig without the redundant
-    frame, 1 for the vertical, 2 for the horizontal one. Outside the flight q is nan.
+    angles: Array  # (n, 4) [rad]
+    target: Array  # (n, 4) w, x, y, z
+    error: Array  # (n,) [rad]
+    first: int
+    last: int
+    chart: int  # 0 for a rig without the redundant frame, 1 for the vertical, 2 for the horizontal one
+
+
+@kernel
+def evaluate(path: Path, s: float, x: Array, q: Array) -> bool:
+    """x, q (4,) <- angles [rad] and attitude at place s [samples]; returns whether s lies in the flight.
+
+    Outside the flight q is nan.
     """
-    n = angles.shape[0]
+    n = path.angles.shape[0]
     i = min(math.floor(s), n - 1)
     f = s - i
-    flight = first <= s <= last
+    flight = path.first <= s <= path.last
     if f < _SNAP or i == n - 1:
         for k in range(4):
-            x[k] = angles[i, k]
-            q[k] = target[i, k] if flight else math.nan
+            x[k] = path.angles[i, k]
+            q[k] = path.target[i, k] if flight else math.nan
         return flight
-    _cubic(angles, i, f, 0, n - 1, x)
+    _cubic(path.angles, i, f, 0, n - 1, x)
     if not flight:
         for k in range(4):
             q[k] = math.nan
         return False
-    _cubic(target, i, f, first, last, q)
+    _cubic(path.target, i, f, path.first, path.last, q)
     norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     for k in range(4):
         q[k] /= norm
-    if chart > 0 and error[i] <= _EXACT and error[i + 1] <= _EXACT:
+    if path.chart > 0 and path.error[i] <= _EXACT and path.error[i + 1] <= _EXACT:
         C = np.empty((3, 3))
         attitude_of(q, C)
-        project(chart == 2, C, x, x)
+        project(path.chart == 2, C, x, x)
     return True
 
 
+class Player(Protocol):
+    """A path being played, as `PLAYER` lays it out."""
+
+    first: int  # of the path: see `Path`
+    last: int
+    chart: int
+    dt: float  # [s] of a tick
+    per_tick: float  # samples of the path, at full scale
+    max_rate: Array  # (4,) [rad/s]
+    max_acceleration: Array  # (4,) [rad/s^2]
+    scale_rate_limit: float  # [1/s]
+    scale_jerk: float  # [1/s^2]
+    wanted: float  # the time scale to go to: 0 hold, 1 run
+    offset: Array  # (4,) [rad] whole turns
+    # Where it is
+    place: float  # [samples] on the path
+    scale: float  # of time
+    scale_rate: float  # [1/s]
+
+
+PLAYER = np.dtype(
+    (
+        np.record,
+        np.dtype(
+            [
+                ("first", "i8"), ("last", "i8"), ("chart", "i8"), ("dt", "f8"), ("per_tick", "f8"),
+                ("max_rate", "f8", 4), ("max_acceleration", "f8", 4), ("scale_rate_limit", "f8"), ("scale_jerk", "f8"),
+                ("wanted", "f8"), ("offset", "f8", 4), ("place", "f8"), ("scale", "f8"), ("scale_rate", "f8"),
+            ],
+            align=True,
+        ),
+    )
+)  # fmt: skip
+
+
 @kernel
-def _excess(dt: float, x: Array, x1: Array, v1: Array, max_rate: Array, max_acceleration: Array) -> float:
+def _excess(player: Player, x: Array, x1: Array, v1: Array) -> float:
     """The worst share of a rate or acceleration limit that the step x1 -> x takes; 1 is the limit."""
     worst = 0.0
     for i in range(4):
-        v = (x[i] - x1[i]) / dt
-        a = (v - v1[i]) / dt
-        worst = max(worst, abs(v) / max_rate[i], abs(a) / max_acceleration[i])
+        v = (x[i] - x1[i]) / player.dt
+        a = (v - v1[i]) / player.dt
+        worst = max(worst, abs(v) / player.max_rate[i], abs(a) / player.max_acceleration[i])
     return worst
 
 
 @kernel
-def advance(
-    angles: Array,
-    target: Array,
-    error: Array,
-    first: int,
-    last: int,
-    chart: int,
-    per_tick: float,
-    dt: float,
-    wanted: float,
-    limits: Array,
-    offset: Array,
-    state: Array,
-    x1: Array,
-    v1: Array,
-    x: Array,
-    q: Array,
-) -> int:
-    """One tick along the path: state, x, q <- the next ones; returns 1 in the flight, 0 in a lead, -1 at the end.
+def _wanted_rate(player: Player) -> float:
+    """The rate of change of the time scale that would be taken, but for the frames' limits [1/s]."""
+    wanted = player.wanted
+    if player.per_tick == 1.0 and wanted == 1.0 and abs(player.place - np.rint(player.place)) >= _SNAP:
+        wanted = 1.0 - _SLIP * player.dt * (player.place - math.floor(player.place))
+    gap = wanted - player.scale
+    rate = min(player.scale_rate_limit, math.sqrt(2.0 * player.scale_jerk * abs(gap)))
+    # Speeding up the change is jerk-limited; slowing it down follows the square root above.
+    rate = min(rate, abs(player.scale_rate) + player.scale_jerk * player.dt)
+    return math.copysign(min(rate, abs(gap) / player.dt), gap)
 
-    wanted is the time scale to go to (0 hold, 1 run); limits (3, 4) holds rates, accelerations and, in row 2, the
-    fastest rate and jerk of the scale; offset (4,) whole turns [rad]; x1, v1 (4,) the last command and its rate. The
+
+@kernel
+def _turned(path: Path, place: float, offset: Array, x: Array, q: Array) -> bool:
+    """`evaluate`, x in the turns that the rig is in."""
+    flight = evaluate(path, place, x, q)
+    for i in range(4):
+        x[i] += offset[i]
+    return flight
+
+
+@kernel
+def advance(angles: Array, target: Array, error: Array, players: Any, x1: Array, v1: Array, x: Array, q: Array) -> int:
+    """One tick along the path: x, q (4,) <- the next command and attitude; 1 in the flight, 0 in a lead, -1 at the end.
+
+    angles, target (n, 4), error (n,): see `Path`; players (1,) `PLAYER`; x1, v1 (4,) the last command and its rate. The
     scale moves as fast as it may without any frame leaving its rate or acceleration limit.
     """
+    player = players[0]
+    path = Path(angles, target, error, player.first, player.last, player.chart)
     end = angles.shape[0] - 1.0
-    place = state[PLACE]
-    scale = state[SCALE]
-    whole = abs(place - np.rint(place)) < _SNAP
-    if per_tick == 1.0 and wanted == 1.0 and not whole:
-        wanted = 1.0 - _SLIP * dt * (place - math.floor(place))
-    gap = wanted - scale
-    rate = min(limits[2, 0], math.sqrt(2.0 * limits[2, 1] * abs(gap)))
-    # Speeding up the change is jerk-limited; slowing it down follows the square root above.
-    rate = min(rate, abs(state[SCALE_RATE]) + limits[2, 1] * dt)
-    rate = math.copysign(min(rate, abs(gap) / dt), gap)
+    place = player.place
+    scale = player.scale
+    rate = _wanted_rate(player)
     best = math.inf
     best_place = place
     best_rate = 0.0
@@ -160,16 +193,13 @@ def advance(
         # Less and less of the wanted change, then the other way: 0 is as safe as the plan itself.
         share = 1.0 - 0.25 * attempt if attempt < 5 else -0.25 * (attempt - 4)
         change = rate * share
-        trial = min(1.0, max(0.0, scale + change * dt))
-        to = place + trial * per_tick
+        to = place + min(1.0, max(0.0, scale + change * player.dt)) * player.per_tick
         nearest = np.rint(to)
         if abs(to - nearest) < _SNAP:
             to = nearest
         to = min(to, end)
-        flight = evaluate(angles, target, error, first, last, chart, to, x, q)
-        for i in range(4):
-            x[i] += offset[i]
-        excess = _excess(dt, x, x1, v1, limits[0], limits[1])
+        flight = _turned(path, to, player.offset, x, q)
+        excess = _excess(player, x, x1, v1)
         if excess < best:
             best = excess
             best_place = to
@@ -179,12 +209,10 @@ def advance(
             best_rate = change
             break
     else:
-        flight = evaluate(angles, target, error, first, last, chart, best_place, x, q)
-        for i in range(4):
-            x[i] += offset[i]
-    state[SCALE] = min(1.0, max(0.0, scale + best_rate * dt))
-    state[SCALE_RATE] = best_rate
-    state[PLACE] = best_place
+        flight = _turned(path, best_place, player.offset, x, q)
+    player.scale = min(1.0, max(0.0, scale + best_rate * player.dt))
+    player.scale_rate = best_rate
+    player.place = best_place
     if best_place >= end:
         return -1
     return 1 if flight else 0
@@ -199,22 +227,26 @@ class PathPlayer:
         self._angles = np.array(plan.angles)
         self._target = np.array(plan.target)
         self._error = np.array(plan.error)
-        self._first = info.lead_in_samples
-        self._last = info.samples - 1 - info.lead_out_samples
-        self._chart = 0 if not rig.geometry.redundant else 2 if rig.geometry.horizontal else 1
-        self._dt = 1.0 / rate_hz
-        self._rate_hz = info.rate_hz
+        self._rate_hz, self._start_s = info.rate_hz, info.start_s
+        self._turns = np.isinf(rig.position_min) & np.isinf(rig.position_max)
+        self._players = np.zeros(1, PLAYER)
+        player: Player = self._players[0]
+        player.first = self._first = info.lead_in_samples
+        player.last = info.samples - 1 - info.lead_out_samples
+        player.chart = 0 if not rig.geometry.redundant else 2 if rig.geometry.horizontal else 1
+        player.dt = 1.0 / rate_hz
         ratio = info.rate_hz / rate_hz
-        self._per_tick = 1.0 if abs(ratio - 1.0) < 1e-12 else ratio
-        self._limits = np.zeros((3, 4))
-        self._limits[0] = rig.max_rate
-        self._limits[1] = rig.max_acceleration
-        self._limits[2, :2] = scale_rate, scale_jerk
-        self._turns = np.array([np.isinf(low) and np.isinf(high) for low, high in _ranges(rig)])
-        self._offset = np.zeros(4)
-        self._state = np.zeros(3)
-        self._start_s = info.start_s
-        self.wanted = 1.0
+        player.per_tick = 1.0 if abs(ratio - 1.0) < 1e-12 else ratio
+        player.max_rate[:], player.max_acceleration[:] = rig.max_rate, rig.max_acceleration
+        player.scale_rate_limit, player.scale_jerk = scale_rate, scale_jerk
+        # Views, for the loop: to read a record's attribute takes microseconds.
+        self._wanted, self._place, self._scale = (self._players[name] for name in ("wanted", "place", "scale"))
+        self._scale_rate, self._offset = self._players["scale_rate"], self._players["offset"][0]
+        self.scale_to(1.0)
+
+    def scale_to(self, scale: float) -> None:
+        """The time scale to go to: 0 hold, 1 run."""
+        self._wanted[0] = scale
 
     def start_pose(self, near: Array) -> Array:
         """Where the path begins (4,) [rad]; frames that turn without end take the turn nearest to `near` (4,)."""
@@ -224,42 +256,19 @@ class PathPlayer:
 
     def rewind(self) -> None:
         """To the start, at full scale: the path begins at rest."""
-        self._state[:] = 0.0, 1.0, 0.0
-        self.wanted = 1.0
+        self._place[0], self._scale[0], self._scale_rate[0] = 0.0, 1.0, 0.0
+        self.scale_to(1.0)
 
     def tick(self, x1: Array, v1: Array, x: Array, q: Array) -> int:
         """One tick: fills x and q; 1 in the flight, 0 in a lead, -1 at the end (see `advance`)."""
-        return int(
-            advance(
-                self._angles,
-                self._target,
-                self._error,
-                self._first,
-                self._last,
-                self._chart,
-                self._per_tick,
-                self._dt,
-                self.wanted,
-                self._limits,
-                self._offset,
-                self._state,
-                x1,
-                v1,
-                x,
-                q,
-            )
-        )
+        return int(advance(self._angles, self._target, self._error, self._players, x1, v1, x, q))
 
     @property
     def time_s(self) -> float:
         """The flight's own time; before its start in the lead-in [s]."""
-        return float((self._state[PLACE] - self._first) / self._rate_hz + self._start_s)
+        return float((self._place[0] - self._first) / self._rate_hz + self._start_s)
 
     @property
     def scale(self) -> float:
         """1 at full speed, 0 held."""
-        return float(self._state[SCALE])
-
-
-def _ranges(rig: Rig) -> list[tuple[float, float]]:
-    return list(zip(rig.position_min.tolist(), rig.position_max.tolist(), strict=True))
+        return float(self._scale[0])

@@ -21,7 +21,7 @@ def play(player: PathPlayer, wanted: list[float], most: int = 200_000) -> tuple[
     player.rewind()
     xs, qs, scales = [x1.copy(), x1.copy()], [], []
     for tick in range(most):
-        player.wanted = wanted[min(tick, len(wanted) - 1)]
+        player.scale_to(wanted[min(tick, len(wanted) - 1)])
         code = player.tick(x1, v1, x, q)
         v1[:] = (x - x1) * RATE
         x1[:] = x
