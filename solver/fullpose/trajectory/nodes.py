@@ -190,7 +190,10 @@ def other_branch(chart: int, d: Array) -> None:
 @kernel
 def fill_nodes(horizontal: bool, C: Array, grid: Grid, nodes: Nodes) -> int:
     """nodes <- those of the attitude C (3, 3); returns how many are alive."""
-    G = grid.cosines.shape[0]
+    # Out of the loops: to take an array from a tuple counts its owners.
+    cosines, sines, low, high = grid
+    position, measures, alive = nodes
+    G = cosines.shape[0]
     step = TURN / G
     V = np.empty((3, 3))
     view(horizontal, C, V)
@@ -199,21 +202,21 @@ def fill_nodes(horizontal: bool, C: Array, grid: Grid, nodes: Nodes) -> int:
     count = 0
     for g in range(G):
         for chart in range(2):
-            measure = node_pose(side, V, chart, -math.pi + step * g, grid.cosines[g], grid.sines[g], d)
+            measure = node_pose(side, V, chart, -math.pi + step * g, cosines[g], sines[g], d)
             for branch in range(2):
                 i = (2 * chart + branch) * G + g
-                nodes.alive[i] = False
+                alive[i] = False
                 if measure == 0.0:
                     continue
                 if branch == 1:
                     other_branch(chart, d)
                 inside = True
                 for k in range(4):
-                    nodes.position[i, k] = angle_from(grid.low[k], d[k])
-                    if nodes.position[i, k] > grid.high[k]:
+                    position[i, k] = angle_from(low[k], d[k])
+                    if position[i, k] > high[k]:
                         inside = False
-                nodes.measure[i] = measure
-                nodes.alive[i] = inside
+                measures[i] = measure
+                alive[i] = inside
                 if inside:
                     count += 1
     return count

@@ -17,7 +17,7 @@ from fullpose.charts import TURN
 from fullpose.rig import Rig
 from fullpose.trajectory.nodes import Lattice, empty_nodes, fill_node, fill_nodes
 from fullpose.trajectory.options import PlanOptions
-from fullpose.trajectory.shortest_path_kernels import Edges, Stage, Turns, advance, nearest_crossing, node_costs
+from fullpose.trajectory.shortest_path_kernels import Copies, Edges, Stage, advance, nearest_crossing, node_costs
 
 REFERENCE_RATE = math.pi  # [rad/s] stands in for the limit, in costs only, where no frame has one
 BACK_BYTES = 128 << 20  # of back-pointers held at once
@@ -73,7 +73,7 @@ class Programme:
         self.time, self.attitude, self.rig, self.grid, self.options = time, attitude, rig, grid, options
         self.slack = slack
         self._nodes = grid.nodes
-        self._turns = Turns(grid.high, grid.wraps, grid.copies, int(np.prod(grid.copies)))
+        self._copies = Copies(grid.high, grid.wraps, grid.copies, int(np.prod(grid.copies)))
         self.rates = reference_rates(rig)
         self.stretch = 1.0
         self.excess = 0.0
@@ -164,7 +164,7 @@ class Programme:
         return NodePath(self._unwrapped(path, start), float(costs[final]), n)
 
     def _first(self, position: Array, cost: Array, alive: NDArray[np.bool_], start: Array | None) -> Array:
-        W = self._turns.total
+        W = self._copies.total
         costs = np.full((len(position), W), math.inf)
         turns = np.array(np.unravel_index(np.arange(W), self.grid.copies)).T  # (W, 4)
         lifted = position[:, None, :] + TURN * turns[None]
@@ -198,7 +198,7 @@ class Programme:
         ahead, reach = self.nodes(stage), self._reach(stage)
         edges = Edges(reach, reach * self.stretch, float(self.excess), self.rig.weight / (self.rates**2 * dt))
         after = np.empty_like(costs)
-        reached = advance(position, costs, ahead, edges, self._turns, after, back)
+        reached = advance(position, costs, ahead, edges, self._copies, after, back)
         return (ahead.position, after) if reached else None
 
     def _closed_by_position(self, stage: int) -> tuple[int, int]:
@@ -236,7 +236,7 @@ class Programme:
 
     def _unwrapped(self, path: Integers, start: Array | None) -> Array:
         """The angles of a path of states (k, 4), continuous, in their counted turns, else the turn nearest home."""
-        n, W = len(path), self._turns.total
+        n, W = len(path), self._copies.total
         angles = np.empty((n, 4))
         turns = np.array(np.unravel_index(path % W, self.grid.copies)).T
         for stage in range(n):

@@ -28,18 +28,18 @@ class Edges(NamedTuple):
     weight: Array  # (4,) [1/rad^2] of the way squared
 
 
-class Turns(NamedTuple):
+class Copies(NamedTuple):
     """Which frames' turns are told apart. States are node * prod(copies) + copy."""
 
     high: Array  # (4,) [rad]
     wraps: NDArray[np.bool_]  # (4,) frames whose turns are not counted
-    copies: Integers  # (4,)
+    each: Integers  # (4,)
     total: int  # copies, of all frames together
 
 
 @inlined
 def edge_cost(
-    edges: Edges, turns: Turns, before: Array, i: int, after: Array, j: int, cost: float, shift: Integers
+    edges: Edges, copies: Copies, before: Array, i: int, after: Array, j: int, cost: float, shift: Integers
 ) -> float:
     """`cost` plus that of the edge from position before[i] to after[j], infinite where it is too long.
 
@@ -54,7 +54,7 @@ def edge_cost(
         size = abs(gap)
         if size > edges.window[k]:
             return np.inf
-        shift[k] = 0 if turns.wraps[k] else int(turned)
+        shift[k] = 0 if copies.wraps[k] else int(turned)
         cost += edges.weight[k] * size * size
         if size > edges.reach[k]:
             over = size / edges.reach[k] - 1.0
@@ -79,20 +79,22 @@ def shifted(copy: int, shift: Integers, copies: Integers) -> int:
 
 
 @inlined
-def in_range(position: Array, j: int, copy: int, turns: Turns) -> bool:
+def in_range(position: Array, j: int, copy: int, copies: Copies) -> bool:
     """Whether node j is inside its ranges in that copy; position (4G, 4) [rad] is the lowest one's."""
     inside = True
     for k in range(3, -1, -1):
-        if position[j, k] + TURN * (copy % turns.copies[k]) > turns.high[k]:
+        if position[j, k] + TURN * (copy % copies.each[k]) > copies.high[k]:
             inside = False
-        copy //= turns.copies[k]
+        copy //= copies.each[k]
     return inside
 
 
 @inlined
-def relax(cost0: Array, i: int, cost1: Array, j: int, back: Counts, edge: float, shift: Integers, turns: Turns) -> None:
+def relax(
+    cost0: Array, i: int, cost1: Array, j: int, back: Counts, edge: float, shift: Integers, copies: Copies
+) -> None:
     """cost1, back <- for the states of node j that the edge from node i, `shift` turns up, makes cheaper."""
-    W = turns.total
+    W = copies.total
     if W == 1:
         if shift[0] == 0 and shift[1] == 0 and shift[2] == 0 and shift[3] == 0:
             total = cost0[i] + edge
@@ -101,7 +103,7 @@ def relax(cost0: Array, i: int, cost1: Array, j: int, back: Counts, edge: float,
                 back[j] = i
         return
     for w in range(W):
-        copy = shifted(w, shift, turns.copies)
+        copy = shifted(w, shift, copies.each)
         if copy < 0:
             continue
         total = cost0[i * W + copy] + edge
@@ -132,15 +134,19 @@ def points_within(span: float, G: int) -> int:
 
 @kernel
 def advance(
-    position0: Array, cost0: Array, stage: Stage, edges: Edges, turns: Turns, cost1: Array, back: Counts
+    position0: Array, cost0: Array, stage: Stage, edges: Edges, copies: Copies, cost1: Array, back: Counts
 ) -> int:
     """One stage of the programme: cost1, back <- the best predecessor of every state; returns how many were reached.
 
     position0 (4G, 4) [rad] and cost0 (states,) are of the stage before.
     """
+    # Out of the loops: to take an array from a tuple counts its owners.
     position1 = stage.position
+    node_cost = stage.cost
+    alive1 = stage.alive
+    window = edges.window
     N = position1.shape[0]
-    W = turns.total
+    W = copies.total
     G = N // 4
     step = TURN / G
     open0 = open_nodes(cost0, N)
@@ -150,11 +156,11 @@ def advance(
         for w in range(W):
             cost1[j * W + w] = np.inf
             back[j * W + w] = -1
-        if not stage.alive[j]:
+        if not alive1[j]:
             continue
         for chart in range(2):
             kept = 0 if chart == 0 else 3
-            radius = points_within(edges.window[kept], G)
+            radius = points_within(window[kept], G)
             centre = int(np.rint((position1[j, kept] + math.pi) / step))
             last = radius if 2 * radius + 1 <= G else G - 1 - radius
             for offset in range(-radius, last + 1):
@@ -163,11 +169,11 @@ def advance(
                     i = (2 * chart + branch) * G + g
                     if not open0[i]:
                         continue
-                    edge = edge_cost(edges, turns, position0, i, position1, j, stage.cost[j], shift)
+                    edge = edge_cost(edges, copies, position0, i, position1, j, node_cost[j], shift)
                     if edge < np.inf:
-                        relax(cost0, i, cost1, j, back, edge, shift, turns)
+                        relax(cost0, i, cost1, j, back, edge, shift, copies)
         for w in range(W):
-            if W > 1 and not in_range(position1, j, w, turns):
+            if W > 1 and not in_range(position1, j, w, copies):
                 cost1[j * W + w] = np.inf
             if cost1[j * W + w] < np.inf:
                 reached += 1
