@@ -12,6 +12,7 @@ from fullpose_server.api import errors, openapi
 from fullpose_server.api.console import console
 from fullpose_server.api.errors import problem_response
 from fullpose_server.api.origin import OriginGuard
+from fullpose_server.api.paths import API
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.routes import (
     audit,
@@ -25,6 +26,7 @@ from fullpose_server.api.routes import (
     scene,
     sessions,
     solve,
+    stop,
     stream,
     trajectories,
 )
@@ -36,8 +38,7 @@ from fullpose_server.settings import Settings
 from fullpose_server.version import VERSION
 from fullpose_server.wiring import serving
 
-API = "/api/v1"
-ROUTES = (rigs, trajectories, plans, compare, sessions, scene, stream, live, replay, solve, runs, audit, health)
+ROUTES = (rigs, trajectories, plans, compare, sessions, stop, scene, stream, live, replay, solve, runs, audit, health)
 DESCRIPTION = (
     "Flies attitude trajectories on four-axis flight motion simulators. Degrees and seconds; frames in the order base, "
     "outer, middle, inner; quaternions w, x, y, z from reference (north, up, east) to body (nose, up, right wing)."

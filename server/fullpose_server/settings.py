@@ -31,6 +31,7 @@ class Settings(BaseSettings):
     allowed_origins: tuple[str, ...] = ()  # pages of other origins that may use the API
     max_upload_bytes: int = Field(default=512 * 1024 * 1024, gt=0)
     max_solve_samples: int = Field(default=1_000_000, gt=0)
+    max_connections: int = Field(default=2000, gt=0)  # served at once; fewer where the system allows fewer files
     rig_rate_hz: float = Field(default=1000.0, ge=100.0, le=4000.0)  # as `RigConfig` has it
     live_udp_ports: dict[str, Port] = {}  # rig name to the port where its live source is heard, on loopback
     live_delay_ms: float = Field(

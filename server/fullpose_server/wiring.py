@@ -26,6 +26,7 @@ from fullpose_server.scene.on_demand import ScenesOnDemand
 from fullpose_server.scene.scenes import SceneServer
 from fullpose_server.settings import Settings
 from fullpose_server.store.audit import AuditLog
+from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.trajectories import TrajectoryStore
@@ -58,6 +59,7 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         stack.callback(database.close)
         served = _build(settings, folder, database, scenes)
         services = served.services
+        stack.push_async_callback(asyncio.to_thread, services.trail.close)
         stack.callback(scenes.close)
         await services.queue.start()
         stack.push_async_callback(services.queue.close)
@@ -82,6 +84,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         rows = None if host is None else host.latest()
         return None if rows is None else rows[0]
 
+    audit = AuditLog(database)
     on_demand = ScenesOnDemand(scenes, rigs, latest)
     services = Services(
         settings=settings,
@@ -91,7 +94,8 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         plans=plans,
         queue=PlanQueue(plans, _PlanRequests(rigs, trajectories, plans).request),
         comparisons=Comparisons(folder / "comparisons"),
-        audit=AuditLog(database),
+        audit=audit,
+        trail=AuditTrail(audit),
         hosts=hosts,
         runs=RunFiles(run_folder),
         scenes=on_demand,

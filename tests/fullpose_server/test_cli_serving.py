@@ -1,45 +1,16 @@
 """`serve` and `demo` as processes: the address first, a flying rig, clear errors, an orderly end."""
 
 import json
-import os
 import signal
 import socket
-import subprocess
-import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
 from websockets.sync.client import connect
 
-from tests.support.repository import PYTHONPATH
+from tests.support.serving import running, start
 from tests.support.waiting import until
-
-
-@contextmanager
-def running(*arguments: str | Path) -> Iterator[tuple["subprocess.Popen[str]", str]]:
-    """A process of the command line and the address that it prints first."""
-    process = start(*arguments)
-    try:
-        assert process.stdout is not None
-        yield process, process.stdout.readline().strip()
-    finally:
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
-
-
-def start(*arguments: str | Path, **env: str) -> "subprocess.Popen[str]":
-    command = [sys.executable, "-c", "from fullpose_server.cli import main; main()", *map(str, arguments)]
-    return subprocess.Popen(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=os.environ | {"PYTHONPATH": PYTHONPATH} | env,
-    )
 
 
 def test_demo_prints_the_address_and_flies_a_real_flight(tmp_path: Path) -> None:

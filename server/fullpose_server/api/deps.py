@@ -1,6 +1,5 @@
 """What the routes work with: one object, built by the app's lifespan, reached through `Annotated` dependencies."""
 
-import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,8 +9,9 @@ from fastapi import Depends, Header
 from numpy.typing import ArrayLike
 from starlette.requests import HTTPConnection
 
+from fullpose_server.api.front import FrontStatus
 from fullpose_server.api.problems import ApiError
-from fullpose_server.api.schemas.base import CLIENT_NAME
+from fullpose_server.api.stopping import is_name, who_stops
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.formats.rig_file import RigStore
 from fullpose_server.planning.comparisons import Comparisons
@@ -20,6 +20,7 @@ from fullpose_server.runtime.recording.run_index import RunFiles
 from fullpose_server.runtime.supervisor.registry import RigHosts
 from fullpose_server.settings import Settings
 from fullpose_server.store.audit import AuditLog
+from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.trajectories import TrajectoryStore
@@ -50,9 +51,11 @@ class Services:
     queue: PlanQueue
     comparisons: Comparisons
     audit: AuditLog
+    trail: AuditTrail
     hosts: RigHosts
     runs: RunFiles
     scenes: Scenes
+    front: FrontStatus = field(default_factory=FrontStatus)
     frames: dict[str, FrameSource] = field(default_factory=dict)
     live_sources: set[str] = field(default_factory=set)  # rigs that have one connected
     replays: set[str] = field(default_factory=set)  # scenes of the records that are played
@@ -66,22 +69,23 @@ async def _services(connection: HTTPConnection) -> Services:
     return services
 
 
-_WHO = re.compile(CLIENT_NAME)
+_CLIENT = Header(description="Who commands, while no users are configured: a name for the lease and the audit")
 
 
-async def _who(
-    connection: HTTPConnection,
-    x_fullpose_client: Annotated[
-        str | None,
-        Header(description="Who commands, while no users are configured: a name for the lease and the audit"),
-    ] = None,
-) -> str:
-    if x_fullpose_client is not None:
-        if not _WHO.fullmatch(x_fullpose_client):
-            raise ApiError(422, "validation", "X-Fullpose-Client: expected up to 64 letters, digits or . @ : + - _")
-        return x_fullpose_client
-    return "anonymous" if connection.client is None else f"anonymous@{connection.client.host}"
+async def _who(connection: HTTPConnection, x_fullpose_client: Annotated[str | None, _CLIENT] = None) -> str:
+    if x_fullpose_client is not None and not is_name(x_fullpose_client):
+        raise ApiError(422, "validation", "X-Fullpose-Client: expected up to 64 letters, digits or . @ : + - _")
+    return who_stops(x_fullpose_client, _address(connection))
+
+
+async def _who_stops(connection: HTTPConnection, x_fullpose_client: Annotated[str | None, _CLIENT] = None) -> str:
+    return who_stops(x_fullpose_client, _address(connection))
+
+
+def _address(connection: HTTPConnection) -> str | None:
+    return None if connection.client is None else connection.client.host
 
 
 ServicesDep = Annotated[Services, Depends(_services)]
 WhoDep = Annotated[str, Depends(_who)]
+WhoStopsDep = Annotated[str, Depends(_who_stops)]  # for no stop is refused for a name

@@ -1,8 +1,6 @@
 """Every error as application/problem+json (RFC 9457), with a stable code in its type."""
 
 import logging
-from collections.abc import Sequence
-from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -11,7 +9,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from fullpose.errors import InputError, MethodError
-from fullpose_server.api.problems import MEDIA_TYPE, ApiError
+from fullpose_server.api.problems import MEDIA_TYPE, ApiError, validation_problem
 from fullpose_server.api.schemas.base import FieldProblem, Problem
 from fullpose_server.errors import FileError, NotFoundError
 
@@ -36,21 +34,6 @@ def problem_of(error: Exception) -> Problem:
         case _:
             log.error("unexpected error", exc_info=error)
             return ApiError(500, "internal", "an error of the server; its log tells more").problem
-
-
-def validation_problem(errors: Sequence[Any]) -> Problem:
-    """422 from pydantic's list of errors."""
-    fields = [
-        FieldProblem(
-            where=".".join(str(part) for part in item["loc"]),
-            message=item["msg"],
-            value=None if item["type"] == "missing" else _abridged(item.get("input")),
-        )
-        for item in errors[:20]
-    ]
-    more = f" (and {len(errors) - 20} more)" if len(errors) > 20 else ""
-    detail = "; ".join(f"{field.where}: {field.message}" for field in fields[:3]) + more
-    return ApiError(422, "validation", detail, errors=fields).problem
 
 
 def problem_response(problem: Problem, request: Request | None = None) -> Response:
@@ -79,8 +62,3 @@ def _file_problem(error: FileError) -> FieldProblem:
         line=error.line,
         expected=error.expected,
     )
-
-
-def _abridged(value: object) -> str | None:
-    text = repr(value)
-    return text if len(text) <= 120 else text[:117] + "..."

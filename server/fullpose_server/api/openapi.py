@@ -12,17 +12,20 @@ from fullpose_server.api.problems import MEDIA_TYPE
 from fullpose_server.api.schemas.base import Problem, Wire
 from fullpose_server.api.schemas.live import LiveOpened, LiveProblem, LiveReplyOut, LiveSampleIn, OpenLive
 from fullpose_server.api.schemas.solve import Opened, OpenSolve, Solved, SolveIn, SolveProblem, SolveSamples
+from fullpose_server.api.schemas.stop import STOP_IN, STOP_OUT
 from fullpose_server.api.schemas.stream import STREAM_IN, STREAM_OUT
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
 
 # The messages of each WebSocket, what a client sends and what the server answers; each tagged by its `type`.
 SENT = {
     "StreamMessageIn": STREAM_IN,
+    "StopMessageIn": STOP_IN,
     "SolveMessageIn": (OpenSolve, SolveSamples),
     "LiveMessageIn": (OpenLive, LiveSampleIn),
 }
 ANSWERED = {
     "StreamMessageOut": STREAM_OUT,
+    "StopMessageOut": STOP_OUT,
     "SolveMessageOut": (Opened, Solved, SolveProblem),
     "LiveMessageOut": (LiveOpened, LiveReplyOut, LiveProblem),
 }

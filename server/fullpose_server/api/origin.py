@@ -3,6 +3,7 @@
 Every WebSocket and every request that changes something must come from an allowed origin, or from no page at all (no
 Origin header: a program). A browser is also kept from being led here under a foreign name (DNS rebinding): a name must
 be this machine's own or in the settings. An address cannot be rebound: any is taken where the network may come.
+A stop is refused to nobody: whoever sends it, the rig is safer for it (decision 0023).
 """
 
 import ipaddress
@@ -12,7 +13,9 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from fullpose_server.api.errors import problem_response
+from fullpose_server.api.paths import API, STOP_CHANNEL
 from fullpose_server.api.problems import ApiError
+from fullpose_server.session.states import NEEDS_NO_LEASE
 from fullpose_server.settings import Settings, is_loopback
 
 SAFE = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -30,7 +33,7 @@ class OriginGuard:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        reason = self._refuse(scope)
+        reason = None if is_stop(scope) else self._refuse(scope)
         if reason is None:
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
@@ -58,6 +61,14 @@ class OriginGuard:
         if is_loopback(name) or (_is_address(name) and not self._settings.loopback):
             return True
         return name in {known.lower() for known in (self._settings.host, *self._settings.allowed_hosts)}
+
+
+def is_stop(scope: Scope) -> bool:
+    """Whether it asks for a stop by its path."""
+    path = str(scope["path"])
+    if scope["type"] == "websocket":
+        return path == f"{API}{STOP_CHANNEL}"
+    return path.startswith(f"{API}/rigs/") and path.rsplit("/", 1)[1] in NEEDS_NO_LEASE and scope["method"] == "POST"
 
 
 def _is_address(name: str) -> bool:

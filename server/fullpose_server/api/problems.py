@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from http import HTTPStatus
+from typing import Any
 
 from fullpose_server.api.schemas.base import FieldProblem, Problem
 
@@ -38,3 +39,23 @@ class ApiError(Exception):
 def not_found(kind: str, name: str) -> ApiError:
     """404 for a thing that is named and not there."""
     return ApiError(404, "not-found", f"no {kind} named {name!r}")
+
+
+def validation_problem(errors: Sequence[Any]) -> Problem:
+    """422 from pydantic's list of errors."""
+    fields = [
+        FieldProblem(
+            where=".".join(str(part) for part in item["loc"]),
+            message=item["msg"],
+            value=None if item["type"] == "missing" else _abridged(item.get("input")),
+        )
+        for item in errors[:20]
+    ]
+    more = f" (and {len(errors) - 20} more)" if len(errors) > 20 else ""
+    detail = "; ".join(f"{field.where}: {field.message}" for field in fields[:3]) + more
+    return ApiError(422, "validation", detail, errors=fields).problem
+
+
+def _abridged(value: object) -> str | None:
+    text = repr(value)
+    return text if len(text) <= 120 else text[:117] + "..."

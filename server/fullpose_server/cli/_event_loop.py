@@ -13,9 +13,13 @@ from collections.abc import Awaitable, Callable, Iterator
 import uvicorn
 import uvloop
 
+from fullpose_server.api.deps import Services
 from fullpose_server.app import create_app
 from fullpose_server.cli._exit import CommandError, fail
 from fullpose_server.errors import ServerError
+from fullpose_server.gate.files import files
+from fullpose_server.gate.keeper import Backend, GateProcess, Keeper
+from fullpose_server.gate.served import served_by
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.scene.scenes import prewarm
 from fullpose_server.settings import Settings
@@ -25,6 +29,7 @@ PREWARM_AFTER_S = 0.5
 # How long a thread that computes (reading an upload) may keep the interpreter from the event loop, at every single
 # send. Python's own 5 ms are half of what an E-stop may take.
 SWITCH_S = 0.0001
+FILES_KEPT = 192  # of those this process may have open: for its own, and three pipes or so a rig
 PRIORITY = 1  # of 99; a rig's loop has 60
 
 
@@ -59,29 +64,30 @@ def _prewarm() -> None:
 
 
 async def _run(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
+    gate = GateProcess.spawn(listener)  # it loads while the server does
     app = create_app(settings)
-    config = uvicorn.Config(
-        app,
-        lifespan="off",  # ours, below: its errors are for the person at the terminal
-        log_config=None,
-        access_log=False,
-        ws_per_message_deflate=False,  # telemetry is small and frequent
-        timeout_graceful_shutdown=3,
-        server_header=False,
-    )
-    async with app.router.lifespan_context(app):
-        server = _Server(config)
-        serving = asyncio.create_task(server.serve(sockets=[listener]))
-        sys.stdout.write(f"{url}\n")
-        sys.stdout.flush()
-        # What the first look at a scene needs is loaded when the server has begun to answer, and nobody waits for it.
-        warming = threading.Thread(target=_prewarm, name="scene-prewarm", daemon=True)
-        later = asyncio.get_running_loop().call_later(PREWARM_AFTER_S, warming.start)
-        beside = asyncio.create_task(_beside(ready, url, server))
-        await serving
-        later.cancel()
-        beside.cancel()
-        results = await asyncio.gather(beside, return_exceptions=True)
+    config = served_by(app, timeout_graceful_shutdown=3)
+    keeper: Keeper | None = None
+    try:
+        async with app.router.lifespan_context(app):
+            server = _Server(config)
+            services: Services = app.state.services
+            backend = Backend(config, server.server_state, min(settings.max_connections, files() - FILES_KEPT))
+            keeper = Keeper(listener, gate, backend, services.hosts.running, services.trail, services.front)
+            serving = asyncio.create_task(server.serve(sockets=[]))  # none of its own: the gate has it
+            sys.stdout.write(f"{url}\n")
+            sys.stdout.flush()
+            # What the first look at a scene needs is loaded when the server has begun to answer: nobody waits for it.
+            warming = threading.Thread(target=_prewarm, name="scene-prewarm", daemon=True)
+            later = asyncio.get_running_loop().call_later(PREWARM_AFTER_S, warming.start)
+            beside = asyncio.create_task(_beside(ready, url, server))
+            await serving
+            keeper.ending()  # while the rigs brake they can still be stopped
+            later.cancel()
+            beside.cancel()
+            results = await asyncio.gather(beside, return_exceptions=True)
+    finally:
+        await (asyncio.to_thread(gate.end) if keeper is None else keeper.close())
     for result in results:
         if isinstance(result, Exception):
             raise result

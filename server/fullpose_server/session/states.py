@@ -1,6 +1,7 @@
 """The words of the session: its states, what may be asked of it, what may happen to it, and what it orders done."""
 
 from enum import StrEnum
+from typing import Literal
 
 
 class State(StrEnum):
@@ -51,6 +52,8 @@ class Command(StrEnum):
 
 
 NEEDS_NO_LEASE = frozenset({Command.STOP, Command.ESTOP})
+# IEC 60204-1: 1 stops under control, then takes the power away; 2 stops under control and leaves it on.
+STOP_CATEGORY: dict[Command, Literal[1, 2]] = {Command.ESTOP: 1, Command.STOP: 2}
 
 
 class Event(StrEnum):

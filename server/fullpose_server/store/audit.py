@@ -1,6 +1,6 @@
 """The audit log: every command, accepted or refused, with who, lease, state before and after."""
 
-import time
+from dataclasses import dataclass
 from typing import Any
 
 from sqlalchemy import select
@@ -9,39 +9,43 @@ from fullpose_server.store.database import Database
 from fullpose_server.store.tables import AuditRow
 
 
+@dataclass(frozen=True)
+class AuditEntry:
+    """One line: `lease` is (epoch, sequence), `states` before and after, `at` [s] since the epoch."""
+
+    at: float
+    who: str
+    rig: str
+    command: str
+    args: dict[str, Any]
+    lease: tuple[int, int] | None
+    states: tuple[str, str]
+    accepted: bool
+    detail: str | None
+
+
 class AuditLog:
     """Written once, never changed."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def write(
-        self,
-        *,
-        who: str,
-        rig: str,
-        command: str,
-        args: dict[str, Any],
-        lease: tuple[int, int] | None,
-        states: tuple[str, str],
-        accepted: bool,
-        detail: str | None,
-    ) -> None:
-        """Add one line. `lease` is (epoch, sequence), `states` before and after."""
+    def write(self, entry: AuditEntry) -> None:
+        """Add one line."""
         with self._database.begin() as session:
             session.add(
                 AuditRow(
-                    at=time.time(),
-                    who=who,
-                    rig=rig,
-                    command=command,
-                    args=args,
-                    lease_epoch=None if lease is None else lease[0],
-                    lease_sequence=None if lease is None else lease[1],
-                    state_before=states[0],
-                    state_after=states[1],
-                    accepted=accepted,
-                    detail=detail,
+                    at=entry.at,
+                    who=entry.who,
+                    rig=entry.rig,
+                    command=entry.command,
+                    args=entry.args,
+                    lease_epoch=None if entry.lease is None else entry.lease[0],
+                    lease_sequence=None if entry.lease is None else entry.lease[1],
+                    state_before=entry.states[0],
+                    state_after=entry.states[1],
+                    accepted=entry.accepted,
+                    detail=entry.detail,
                 )
             )
 

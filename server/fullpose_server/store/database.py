@@ -13,11 +13,11 @@ MIGRATIONS = Path(__file__).parent / "migrations"
 
 
 class Database:
-    """Sessions on the file; synchronous: async callers go through a thread."""
+    """Sessions on the file; synchronous: async callers go through a thread. Locked, it is waited for, `busy_s` [s]."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, busy_s: float = 10.0) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
-        self.engine = _engine(path)
+        self.engine = _engine(path, busy_s)
         migrate(self.engine)
         self._sessions = sessionmaker(self.engine, expire_on_commit=False)
 
@@ -49,8 +49,8 @@ def migrate(engine: Engine) -> None:
         command.upgrade(config, "head")
 
 
-def _engine(path: Path) -> Engine:
-    engine = create_engine(f"sqlite:///{path}", connect_args={"timeout": 10.0})
+def _engine(path: Path, busy_s: float) -> Engine:
+    engine = create_engine(f"sqlite:///{path}", connect_args={"timeout": busy_s})
 
     @event.listens_for(engine, "connect")
     def _pragmas(connection: Any, _record: object) -> None:

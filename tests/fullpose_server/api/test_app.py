@@ -23,16 +23,25 @@ from tests.fullpose_server.api.live_server import LiveServer
 
 def test_a_foreign_page_may_look_and_not_touch(server: LiveServer) -> None:
     foreign = {"origin": "http://evil.example"}
-    answer = server.http.post("/rigs/vertical-4/estop", headers=foreign)
+    answer = server.http.post("/rigs/vertical-4/lease", headers=foreign)
     assert answer.status_code == 403
     assert answer.headers["content-type"] == "application/problem+json"
     assert "evil.example" in answer.json()["detail"]
     assert server.http.get("/rigs", headers=foreign).status_code == 200
     own = {"origin": server.url}
-    assert server.http.post("/rigs/vertical-4/estop", headers=own).status_code == 409
+    assert server.http.post("/rigs/nowhere/lease", headers=own).status_code == 404
     for path in ("/api/v1/solve", "/scene/vertical-4/"):
         with pytest.raises(InvalidStatus), connect(f"ws{server.url[4:]}{path}", origin="null", proxy=None):
             pass
+
+
+@pytest.mark.parametrize("word", ["stop", "estop"])
+def test_no_header_refuses_a_stop(server: LiveServer, word: str) -> None:
+    odd = {"origin": "http://evil.example", "host": "rebound.example", "x-fullpose-client": 'joe "b" <' + "x" * 200}
+    answer = server.http.post(f"/rigs/vertical-3/{word}", headers=odd)
+    assert answer.status_code == 202, answer.text
+    line = server.http.get("/audit", params={"rig": "vertical-3", "limit": 1}).json()[0]
+    assert (line["command"], line["who"]) == (word, ("joe__b___" + "x" * 200)[:64])
 
 
 def test_another_name_for_this_server_is_refused(server: LiveServer) -> None:

@@ -23,7 +23,10 @@ def test_a_rig_without_a_process_is_disconnected_and_says_what_can_be_done(serve
         ["connect"],
         False,
     )
-    assert refused(server.http.post("/rigs/horizontal-4/stop"))["allowed"] == ["connect"]
+    for word, category in (("stop", 2), ("estop", 1)):  # never refused: what is not known is told
+        told = server.http.post(f"/rigs/horizontal-4/{word}")
+        assert (told.status_code, told.json()["stop_category"]) == (202, category)
+        assert "no rig process runs" in told.json()["unknown"]
     # Refused without starting one.
     for word, status, code in (("arm", 409, "illegal-command"), ("connect", 403, "lease-needed")):
         body = refused(server.http.post("/rigs/horizontal-4/commands", json={"command": word}), status)
@@ -31,8 +34,11 @@ def test_a_rig_without_a_process_is_disconnected_and_says_what_can_be_done(serve
         assert (body["state"], body["allowed"]) == ("disconnected", ["connect"])
     assert "horizontal-4" not in server.http.get("/health").json()["rigs"]
     assert [line["accepted"] for line in server.http.get("/audit", params={"rig": "horizontal-4"}).json()] == [
-        False
-    ] * 2
+        False,
+        False,
+        True,
+        True,
+    ]
     assert refused(server.http.get("/rigs/nowhere/session"), 404)["type"].endswith("not-found")
 
 

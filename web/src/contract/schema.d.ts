@@ -331,7 +331,9 @@ export interface paths {
         put?: never;
         /**
          * Estop
-         * @description Brake as fast as the limits allow, then disable the drive. Needs no lease and waits for no other command.
+         * @description Brake as fast as the limits allow, then disable the drive (IEC 60204-1 category 1). No lease; waits for nothing.
+         *
+         *     It is no safety function: the hardware chain beside the rig is.
          */
         post: operations["estop_api_v1_rigs__rig__estop_post"];
         delete?: never;
@@ -415,7 +417,7 @@ export interface paths {
         put?: never;
         /**
          * Stop
-         * @description Brake every frame inside its limits. Needs no lease and waits for no other command.
+         * @description Brake every frame inside its limits (IEC 60204-1 category 2). Needs no lease and waits for no other command.
          */
         post: operations["stop_api_v1_rigs__rig__stop_post"];
         delete?: never;
@@ -718,6 +720,16 @@ export interface components {
             revision: number;
             state_after: components["schemas"]["State"];
             state_before: components["schemas"]["State"];
+            /**
+             * Stop Category
+             * @description Of stop and estop, IEC 60204-1: 1, stopped under control, then power off; 2, power stays on. No safety function
+             */
+            stop_category?: (1 | 2) | null;
+            /**
+             * Unknown
+             * @description Of stop and estop, with 202: the order was given, and this is not known of what came of it
+             */
+            unknown?: string | null;
         };
         /**
          * CompareIn
@@ -2175,6 +2187,22 @@ export interface components {
             state: string;
         };
         /**
+         * RigStopped
+         * @description The rig brakes; where `done.unknown` says so, the order was given and that is all that is known.
+         */
+        RigStopped: {
+            done: components["schemas"]["CommandOut"];
+            /** Id */
+            id: number;
+            /** Rig */
+            rig: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            type: "stopped";
+        };
+        /**
          * RunnerStatus
          * @description What a runner does.
          * @enum {string}
@@ -2536,6 +2564,8 @@ export interface components {
             command: "stop";
             lease?: components["schemas"]["LeaseToken"] | null;
         };
+        StopMessageIn: components["schemas"]["StopRig"] | components["schemas"]["StopPing"];
+        StopMessageOut: components["schemas"]["RigStopped"] | components["schemas"]["StopPong"] | components["schemas"]["StopRefused"];
         /**
          * StopNow
          * @description Live only: the priority channel of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; at once.
@@ -2572,6 +2602,73 @@ export interface components {
              * @enum {string}
              */
             type: "stopped";
+        };
+        /**
+         * StopPing
+         * @description Answered at once: the round trip of a stop, but for the rig's own tick.
+         */
+        StopPing: {
+            /** T */
+            t: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            type: "ping";
+        };
+        /** StopPong */
+        StopPong: {
+            /** Server Time */
+            server_time: number;
+            /** T */
+            t: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            type: "pong";
+        };
+        /**
+         * StopRefused
+         * @description The message was none, or the session's state knows no such command.
+         */
+        StopRefused: {
+            /**
+             * Id
+             * @default null
+             */
+            id: number | null;
+            problem: components["schemas"]["Problem"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            type: "problem";
+        };
+        /**
+         * StopRig
+         * @description Stop or E-stop, now. Needs no lease and is never refused for a name.
+         */
+        StopRig: {
+            /**
+             * Client
+             * @description Who stops, as the header X-Fullpose-Client
+             * @default null
+             */
+            client: string | null;
+            /**
+             * Id
+             * @description Told again in the answer
+             * @default 0
+             */
+            id: number;
+            /** Rig */
+            rig: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            type: "stop" | "estop";
         };
         StreamMessageIn: components["schemas"]["Subscribe"] | components["schemas"]["Ping"] | components["schemas"]["StopNow"] | components["schemas"]["Seek"] | components["schemas"]["Speed"] | components["schemas"]["Pause"] | components["schemas"]["Play"];
         StreamMessageOut: components["schemas"]["Hello"] | components["schemas"]["Telemetry"] | components["schemas"]["SessionChanged"] | components["schemas"]["Replayed"] | components["schemas"]["Pong"] | components["schemas"]["Stopped"] | components["schemas"]["StreamProblem"];
@@ -3612,6 +3709,15 @@ export interface operations {
                     "application/json": components["schemas"]["CommandOut"];
                 };
             };
+            /** @description A stop was given to a rig process that is not there, or does not answer: `unknown` tells */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CommandOut"];
+                };
+            };
             /** @description The session refuses; nothing has changed. Names state, command and what is allowed */
             409: {
                 headers: {
@@ -3666,6 +3772,15 @@ export interface operations {
         responses: {
             /** @description Successful Response */
             200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CommandOut"];
+                };
+            };
+            /** @description A stop was given to a rig process that is not there, or does not answer: `unknown` tells */
+            202: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -3946,6 +4061,15 @@ export interface operations {
         responses: {
             /** @description Successful Response */
             200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CommandOut"];
+                };
+            };
+            /** @description A stop was given to a rig process that is not there, or does not answer: `unknown` tells */
+            202: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -46,6 +46,8 @@ def _wrong(services: Services) -> list[str]:
         found.append("the planner has stopped")
     if services.comparisons.status == "stopped":
         found.append("comparisons are made no more")
+    found += services.trail.faults()
+    found += services.front.faults()
     for host in services.hosts.all():
         state = host.snapshot().health
         if not state.rig_alive:

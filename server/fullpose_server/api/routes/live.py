@@ -12,7 +12,7 @@ import msgspec
 from fastapi import APIRouter, WebSocket
 from pydantic import TypeAdapter
 
-from fullpose_server.api.commanding import answer, audit
+from fullpose_server.api.commanding import audit
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import problem_of
 from fullpose_server.api.problems import ApiError
@@ -25,6 +25,7 @@ from fullpose_server.api.schemas.live import (
     OpenLive,
     SampleStatus,
 )
+from fullpose_server.api.stopping import answer
 from fullpose_server.api.streams.live_link import LinkLostError, LiveLink, split
 from fullpose_server.api.streams.tasks import GoneError, close_for, send_bytes, send_text
 from fullpose_server.runtime.live.packets import Kind, LiveReply, LiveStatus, encode_sample
@@ -146,7 +147,7 @@ class _Source:
             settings = message.model_dump(include={"method", "options", "first_sample_s"})
             token = LeaseToken(message.lease.epoch, message.lease.sequence)
             reply = await self._host.command("load", {"live": settings}, self._who, token)
-            await audit(self._services, self._host.name, self._who, "load", {"live": settings}, message.lease, reply)
+            audit(self._services, self._host.name, self._who, "load", {"live": settings}, message.lease, reply)
             answer("load", reply)  # raises the refusal
         self._convention = message.convention
         snapshot = self._host.snapshot()

@@ -4,10 +4,10 @@ import asyncio
 from dataclasses import replace
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body
+from fastapi import APIRouter, Body, Response
 
-from fullpose_server.api.commanding import answer, audit, by_priority, refusal, without_process
-from fullpose_server.api.deps import Services, ServicesDep, WhoDep
+from fullpose_server.api.commanding import audit, by_priority, without_process
+from fullpose_server.api.deps import Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.session import (
     AlarmOut,
@@ -20,6 +20,7 @@ from fullpose_server.api.schemas.session import (
     SessionOut,
 )
 from fullpose_server.api.session_view import lease_out, session_out
+from fullpose_server.api.stopping import answer, refusal, status_of
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.runtime.supervisor.errors import HostError, RefusedError, RequestTooLargeError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
@@ -32,6 +33,12 @@ router = APIRouter(prefix="/rigs/{rig}", tags=["session"])
 REFUSED: dict[int | str, dict[str, Any]] = {
     409: {"description": "The session refuses; nothing has changed. Names state, command and what is allowed"},
     503: {"description": "The rig process does not answer"},
+}
+STOPPED = REFUSED | {
+    202: {
+        "model": CommandOut,
+        "description": "A stop was given to a rig process that is not there, or does not answer: `unknown` tells",
+    }
 }
 
 
@@ -49,11 +56,13 @@ async def get_alarms(rig: str, services: ServicesDep) -> list[AlarmOut]:
     return session_out(services.hosts, rig, services.settings.rig_rate_hz).history
 
 
-@router.post("/commands", responses=REFUSED)
-async def command(rig: str, body: Annotated[CommandIn, Body()], services: ServicesDep, who: WhoDep) -> CommandOut:
+@router.post("/commands", responses=STOPPED)
+async def command(
+    rig: str, body: Annotated[CommandIn, Body()], services: ServicesDep, who: WhoStopsDep, response: Response
+) -> CommandOut:
     """Command the session. Needs the lease, but for stop and estop."""
     if body.command in NEEDS_NO_LEASE:
-        return await _by_priority(services, rig, Command(body.command), who)
+        return await _by_priority(services, rig, Command(body.command), who, response)
     host = services.hosts.get(rig)
     if host is None:
         raise await _refused_without_process(services, rig, body, who)
@@ -65,20 +74,23 @@ async def command(rig: str, body: Annotated[CommandIn, Body()], services: Servic
         reply = await host.command(body.command, args, who, token)
     except RequestTooLargeError as error:
         raise ApiError(413, "too-large", str(error), command=body.command) from None
-    await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
     return answer(body.command, reply)
 
 
-@router.post("/stop", responses=REFUSED)
-async def stop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
-    """Brake every frame inside its limits. Needs no lease and waits for no other command."""
-    return await _by_priority(services, rig, Command.STOP, who)
+@router.post("/stop", responses=STOPPED)
+async def stop(rig: str, services: ServicesDep, who: WhoStopsDep, response: Response) -> CommandOut:
+    """Brake every frame inside its limits (IEC 60204-1 category 2). Needs no lease and waits for no other command."""
+    return await _by_priority(services, rig, Command.STOP, who, response)
 
 
-@router.post("/estop", responses=REFUSED)
-async def estop(rig: str, services: ServicesDep, who: WhoDep) -> CommandOut:
-    """Brake as fast as the limits allow, then disable the drive. Needs no lease and waits for no other command."""
-    return await _by_priority(services, rig, Command.ESTOP, who)
+@router.post("/estop", responses=STOPPED)
+async def estop(rig: str, services: ServicesDep, who: WhoStopsDep, response: Response) -> CommandOut:
+    """Brake as fast as the limits allow, then disable the drive (IEC 60204-1 category 1). No lease; waits for nothing.
+
+    It is no safety function: the hardware chain beside the rig is.
+    """
+    return await _by_priority(services, rig, Command.ESTOP, who, response)
 
 
 @router.post("/lease", responses=REFUSED)
@@ -94,10 +106,12 @@ async def release_lease(rig: str, services: ServicesDep, who: WhoDep) -> LeaseOu
     return await _lease(services, await _host(services, rig), "release", who, None)
 
 
-async def _by_priority(services: Services, rig: str, command: Command, who: str) -> CommandOut:
+async def _by_priority(services: Services, rig: str, command: Command, who: str, response: Response) -> CommandOut:
     if services.hosts.get(rig) is None:  # otherwise nothing is waited for before the flag is set
         await _known(services, rig)
-    return await by_priority(services, rig, command, who)
+    done = answer(command, await by_priority(services, rig, command, who))
+    response.status_code = status_of(done)
+    return done
 
 
 async def _lease(services: Services, host: RigHost, action: str, who: str, to: str | None) -> LeaseOut:
@@ -105,12 +119,12 @@ async def _lease(services: Services, host: RigHost, action: str, who: str, to: s
     try:
         held = await host.lease(action, who, to)
     except RefusedError as refused:
-        await audit(services, host.name, who, f"lease {action}", {}, None, refused.reply)
+        audit(services, host.name, who, f"lease {action}", {}, None, refused.reply)
         raise refusal(refused.reply) from None
     if action != "renew":  # every few seconds; it says nothing that the next command does not
         reply = Reply(ok=True, state_before=before, state_after=host.snapshot().state, revision=host.revision)
         token = LeaseToken(epoch=held.epoch, sequence=held.sequence)
-        await audit(services, host.name, who, f"lease {action}", {} if to is None else {"to": to}, token, reply)
+        audit(services, host.name, who, f"lease {action}", {} if to is None else {"to": to}, token, reply)
     return lease_out(held)
 
 
@@ -121,7 +135,7 @@ async def _refused_without_process(services: Services, rig: str, body: CommandIn
     if body.command == Command.CONNECT:
         lease_needed = ErrorBody("lease_needed", LEASE_NEEDED, reply.state_before, body.command, [body.command])
         reply = replace(reply, error=lease_needed)
-    await audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
     return refusal(reply)
 
 

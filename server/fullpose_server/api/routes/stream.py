@@ -14,6 +14,7 @@ from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.session import SessionOut
 from fullpose_server.api.schemas.stream import Hello, Playback, SessionChanged, StopNow, Stopped
 from fullpose_server.api.session_view import session_out
+from fullpose_server.api.stopping import answer
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.api.streams.frames import record
 from fullpose_server.api.streams.stream_client import StreamClient
@@ -70,7 +71,7 @@ class _Rig:
         done = by_priority(self._services, self._rig, Command(message.type), who)
 
         async def answered() -> Wire:
-            return Stopped.model_validate((await done).model_dump())
+            return Stopped.model_validate(answer(message.type, await done).model_dump())
 
         return answered()
 

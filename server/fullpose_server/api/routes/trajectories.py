@@ -12,8 +12,7 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import ValidationError
 
 from fullpose_server.api.deps import Services, ServicesDep
-from fullpose_server.api.errors import validation_problem
-from fullpose_server.api.problems import ApiError
+from fullpose_server.api.problems import ApiError, validation_problem
 from fullpose_server.api.schemas.base import Notice
 from fullpose_server.api.schemas.trajectories import TrajectoryIn, TrajectoryOut, TrajectoryPreview
 from fullpose_server.api.uploads import Upload, receive, too_large

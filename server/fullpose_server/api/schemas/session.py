@@ -114,6 +114,15 @@ class CommandOut(Wire):
     state_before: State
     state_after: State
     revision: int
+    stop_category: Literal[1, 2] | None = Field(
+        default=None,
+        description="Of stop and estop, IEC 60204-1: 1, stopped under control, then power off; 2, power stays on. "
+        "No safety function",
+    )
+    unknown: str | None = Field(
+        default=None,
+        description="Of stop and estop, with 202: the order was given, and this is not known of what came of it",
+    )
 
 
 class LeaseIn(Wire):

@@ -38,13 +38,14 @@ class ErrorBody:
 
 @dataclass(frozen=True)
 class Reply:
-    """What became of a command."""
+    """What became of a command. `unknown`: it was given, and this is not known of what came of it."""
 
     ok: bool
     state_before: str
     state_after: str
     revision: int
     error: ErrorBody | None = None
+    unknown: str | None = None
 
 
 @dataclass(frozen=True)

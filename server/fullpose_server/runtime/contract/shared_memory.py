@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from fullpose_server.runtime.contract.memory_order import acquire, release
 from fullpose_server.runtime.contract.telemetry import SAMPLE, Ring, Samples
 
-MAGIC = 0x46504C5053523031
+MAGIC = 0x46504C5053523032
 SAMPLES = 32768
 EVENTS = 1024
 EVENT_BYTES = 2032
@@ -46,6 +46,7 @@ HEADER = np.dtype(
         # Written by the server.
         ("server_pid", "<i8"),
         ("server_beat_ns", "<i8"),
+        ("revision_offset", "<u8"),  # what the server adds to `revision`: it rises over restarts of the process
         ("estop_request_ns", "<i8"),
         ("stop_request_ns", "<i8"),
         ("estop_who", "S64"),

@@ -22,6 +22,7 @@ from fullpose_server.runtime.supervisor.errors import HostError, RigUnreachableE
 from fullpose_server.runtime.supervisor.heartbeat import Heartbeat
 from fullpose_server.runtime.supervisor.launcher import Launcher
 from fullpose_server.runtime.supervisor.process_view import ProcessView
+from fullpose_server.runtime.supervisor.running import RunningProcess, RunningProcesses
 from fullpose_server.session.states import State
 
 log = logging.getLogger(__name__)
@@ -36,11 +37,14 @@ _RETRY_S = 1.0
 class ProcessManager:
     """Of one rig. Keeps `view` on the newest process, and `link` to it."""
 
-    def __init__(self, config: RigConfig, paths: RigPaths, view: ProcessView, link: StandingLink) -> None:
+    def __init__(
+        self, config: RigConfig, paths: RigPaths, view: ProcessView, link: StandingLink, running: RunningProcesses
+    ) -> None:
         self._config = config
         self._paths = paths
         self._view = view
         self._link = link
+        self._running = running
         self._launcher = Launcher(paths)
         self._adopted = False
         self._pidfd = -1
@@ -88,6 +92,7 @@ class ProcessManager:
                 await self._end()
         finally:
             await self._detach()
+            self._running.left(self._config.name)
             if heartbeat is not None:
                 heartbeat.stop()
 
@@ -108,6 +113,7 @@ class ProcessManager:
         shared.header["server_beat_ns"] = time.monotonic_ns()
         asyncio.get_running_loop().add_reader(self._pidfd, self._died)
         self._view.attach(pid, shared)
+        self._running.came(RunningProcess(self._config.name, pid, self._paths.memory()))
 
     async def _detach(self) -> None:
         if self._pidfd >= 0:

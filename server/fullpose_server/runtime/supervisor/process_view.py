@@ -166,6 +166,8 @@ class ProcessView:
         return messages.Reply(False, before, self.state(), self.revision, body)
 
     def _announce(self) -> None:
+        if self._shared is not None:
+            self._shared.header["revision_offset"] = self._offset
         self._announced = self.revision
         changed, self._changed = self._changed, asyncio.Event()
         changed.set()

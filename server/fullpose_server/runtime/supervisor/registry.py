@@ -11,6 +11,7 @@ from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.runtime.supervisor.running import RunningProcesses
 from fullpose_server.session.states import IN_MOTION
 
 BRAKING_S = 15.0
@@ -27,6 +28,7 @@ class RigHosts:
         self._hosts: dict[str, RigHost] = {}
         self._starting: dict[str, asyncio.Task[RigHost]] = {}
         self._appeared = asyncio.Event()
+        self.running = RunningProcesses()
 
     def get(self, rig: str) -> RigHost | None:
         """The host of a rig, None where it has no process."""
@@ -54,7 +56,7 @@ class RigHosts:
         return await asyncio.shield(starting)
 
     async def _start(self, rig: str) -> RigHost:
-        host = RigHost(await asyncio.to_thread(self._config, rig))
+        host = RigHost(await asyncio.to_thread(self._config, rig), self.running)
         await host.start()
         self._hosts[rig] = host
         appeared, self._appeared = self._appeared, asyncio.Event()

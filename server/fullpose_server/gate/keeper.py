@@ -1,0 +1,220 @@
+"""The server's side of the stop gate: starts it, starts it anew where it ends, serves what it passes on, audits."""
+
+import asyncio
+import contextlib
+import logging
+import socket
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import uvicorn
+from uvicorn.server import ServerState
+
+from fullpose_server.api.front import FrontStatus
+from fullpose_server.api.problems import MEDIA_TYPE, ApiError
+from fullpose_server.gate import messages
+from fullpose_server.gate.served import Served
+from fullpose_server.runtime.supervisor.running import RunningProcess, RunningProcesses
+from fullpose_server.store.audit import AuditEntry
+from fullpose_server.store.audit_trail import AuditTrail
+
+RETRY_S = 0.5
+SILENT_S = 5.0  # a gate that tells nothing for so long serves nobody: it tells at least every `gate.process.SWEEP_S`
+_AT_ONCE = 64  # messages; then the event loop has its turn
+_END_S = 5.0
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class GateProcess:
+    """A gate that was started, and the server's end of the link to it."""
+
+    process: "subprocess.Popen[bytes]"
+    link: socket.socket
+
+    @classmethod
+    def spawn(cls, listener: socket.socket) -> "GateProcess":
+        """Start one: it accepts at once, and waits for what it may stop and whom it may hand over to."""
+        ours, theirs = messages.link()
+        with theirs:
+            numbers = [str(listener.fileno()), str(theirs.fileno())]
+            command = [sys.executable, "-m", "fullpose_server.gate.process"]
+            process = subprocess.Popen(
+                [*command, "--listener", numbers[0], "--link", numbers[1]],
+                pass_fds=(listener.fileno(), theirs.fileno()),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+            )
+        return cls(process, ours)
+
+    def end(self) -> None:
+        """It ends when its link does; one that does not is killed."""
+        self.link.close()
+        try:
+            self.process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+
+@dataclass(frozen=True)
+class Backend:
+    """What serves the connections that the gate passes on: at most `most` at once."""
+
+    config: uvicorn.Config
+    state: ServerState
+    most: int
+
+
+class Keeper:
+    """Of one server's gate, from construction until `close`. Everything belongs to the event loop's thread."""
+
+    def __init__(
+        self,
+        listener: socket.socket,
+        gate: GateProcess,
+        backend: Backend,
+        running: RunningProcesses,
+        trail: AuditTrail,
+        status: FrontStatus,
+    ) -> None:
+        self._listener = listener
+        self._backend = backend
+        self._running = running
+        self._trail = trail
+        self._status = status
+        self._loop = asyncio.get_running_loop()
+        self._ending = False
+        self._serving = set[asyncio.Task[Any]]()
+        self._gate = gate
+        self._heard = time.monotonic()
+        running.watch(self._changed)
+        self._begin()
+        self._watch = asyncio.create_task(self._watch_on(), name="watch the stop gate")
+
+    def ending(self) -> None:
+        """From here on nothing but stops is served."""
+        self._ending = True
+        self._send(messages.Ending())
+
+    async def close(self) -> None:
+        """End the gate."""
+        self._watch.cancel()
+        await asyncio.gather(self._watch, return_exceptions=True)
+        self._loop.remove_reader(self._gate.link)
+        self._listener.close()
+        await asyncio.to_thread(self._gate.end)
+
+    # --- the gate's life ---
+
+    def _begin(self) -> None:
+        self._heard = time.monotonic()
+        self._loop.add_reader(self._gate.link, self._hear, self._gate)
+        for process in self._running.all():
+            self._changed(process.rig, process)
+        if self._ending:
+            self.ending()
+
+    async def _watch_on(self) -> None:
+        while True:
+            await asyncio.sleep(RETRY_S)
+            if self._status.down_since is None and time.monotonic() - self._heard > SILENT_S:
+                self._lost(f"it has told nothing for {SILENT_S:g} s")
+            if self._status.down_since is not None:
+                await asyncio.to_thread(self._gate.end)
+                self._gate = GateProcess.spawn(self._listener)
+                self._status.down_since = None
+                self._begin()
+
+    def _lost(self, why: str) -> None:
+        if self._status.down_since is None:
+            log.error("the stop gate, process %d, is started anew: %s", self._gate.process.pid, why)
+            self._status.down_since = time.time()
+            self._loop.remove_reader(self._gate.link)
+            with contextlib.suppress(ProcessLookupError):
+                self._gate.process.kill()
+
+    def _changed(self, rig: str, process: RunningProcess | None) -> None:
+        if process is None:
+            self._send(messages.RigLeft(rig))
+        else:
+            self._send(messages.RigRuns(rig, process.pid, str(process.memory)))
+
+    def _send(self, message: messages.ToGate) -> None:
+        try:
+            messages.send(self._gate.link, message)
+        except OSError as cause:
+            self._lost(f"it takes no message ({cause})")
+
+    # --- what it says ---
+
+    def _hear(self, gate: GateProcess) -> None:
+        for _ in range(_AT_ONCE):
+            try:
+                message = messages.for_server(gate.link)
+            except BlockingIOError:
+                return
+            except messages.NoDescriptorError:
+                self._status.refused += 1
+                continue
+            except OSError:
+                message = None
+            self._heard = time.monotonic()
+            match message:
+                case messages.Passed():
+                    self._serve(message)
+                case messages.Stopped():
+                    self._trail.follow(_entry(message))
+                case messages.Waiting(connections, dropped):
+                    self._status.waiting, self._status.dropped = connections, dropped
+                case None:
+                    self._lost("it has ended")
+                    return
+
+    def _serve(self, passed: messages.Passed) -> None:
+        backend = self._backend
+        if len(backend.state.connections) + len(self._serving) >= backend.most:
+            self._status.refused += 1
+            with passed.socket, contextlib.suppress(OSError):
+                passed.socket.setblocking(False)
+                passed.socket.send(_FULL)
+            return
+        passed.socket.setblocking(False)
+        begun = passed.data
+        made = self._loop.connect_accepted_socket(lambda: Served(begun, backend.config, backend.state), passed.socket)
+        task = asyncio.ensure_future(made)
+        self._serving.add(task)
+        task.add_done_callback(self._served)
+
+    def _served(self, task: "asyncio.Task[Any]") -> None:
+        self._serving.discard(task)
+        if not task.cancelled() and task.exception() is not None:
+            log.debug("a connection ended before it was served: %s", task.exception())
+
+
+def _entry(told: messages.Stopped) -> AuditEntry:
+    return AuditEntry(
+        at=told.at,
+        who=told.who,
+        rig=told.rig,
+        command=told.command,
+        args={},
+        lease=None,
+        states=told.states,
+        accepted=told.accepted,
+        detail=told.detail,
+    )
+
+
+def _full() -> bytes:
+    """The answer, as bytes: no more is spent on a connection that cannot be served."""
+    told = ApiError(503, "busy", "the server has as many connections as it may: close some, or try again later")
+    body = told.problem.model_dump_json(exclude_none=True).encode()
+    head = f"HTTP/1.1 503 Service Unavailable\r\ncontent-type: {MEDIA_TYPE}\r\ncontent-length: {len(body)}\r\n"
+    return head.encode() + b"retry-after: 1\r\nconnection: close\r\n\r\n" + body
+
+
+_FULL = _full()

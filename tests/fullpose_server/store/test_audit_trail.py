@@ -1,0 +1,47 @@
+"""The audit follows: nobody waits for a row, and none is lost for a database that is locked for a while."""
+
+import sqlite3
+from pathlib import Path
+
+from fullpose_server.store.audit import AuditEntry, AuditLog
+from fullpose_server.store.audit_trail import MOST, AuditTrail
+from fullpose_server.store.database import Database
+from tests.support.waiting import until
+
+
+def entry(number: int) -> AuditEntry:
+    return AuditEntry(float(number), "ann", "rig", "estop", {}, None, ("running", "estopped"), True, None)
+
+
+def test_a_locked_database_holds_nobody_up_and_loses_no_row(tmp_path: Path) -> None:
+    database = Database(tmp_path / "fullpose.db", busy_s=0.05)
+    log = AuditLog(database)
+    trail = AuditTrail(log)
+    locked = sqlite3.connect(tmp_path / "fullpose.db", isolation_level=None)
+    locked.execute("BEGIN EXCLUSIVE")
+    for number in range(20):
+        trail.follow(entry(number))
+    told = until(trail.faults)
+    assert "20 lines wait" in told[0]
+    assert "locked" in told[0]
+    assert not trail.written(0.0)
+    locked.execute("ROLLBACK")
+    locked.close()
+    assert trail.written(60.0)
+    assert trail.faults() == []
+    assert [row.at for row in reversed(log.all(None, None, 100))] == [float(k) for k in range(20)]
+    trail.close()
+    database.close()
+
+
+def test_what_cannot_be_kept_is_told(tmp_path: Path) -> None:
+    database = Database(tmp_path / "fullpose.db", busy_s=0.05)
+    trail = AuditTrail(AuditLog(database))
+    locked = sqlite3.connect(tmp_path / "fullpose.db", isolation_level=None)
+    locked.execute("BEGIN EXCLUSIVE")
+    for number in range(MOST + 3):
+        trail.follow(entry(number))
+    assert any("3 lines of the audit were lost" in fault for fault in trail.faults())
+    trail.close()  # ends, though nothing can be written
+    locked.close()
+    database.close()
