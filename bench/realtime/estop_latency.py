@@ -99,7 +99,7 @@ async def measure(times: int, viewers: int) -> None:
         plan = write_swing(root / "plan", rig, 1.0)
         print(machine())
         print(f"{'request to first braking command [ms]':44s} {'p50':>8s} {'p99':>8s} {'max':>8s} {'times':>6s}")
-        with served(root / "data") as port:
+        with served(root / "data") as (port, _):
             status, body = post(port, f"/rigs/{RIG}/lease", {"action": "take"})
             assert status == 200, body
             (lock,) = (root / "data").rglob("rig.lock")

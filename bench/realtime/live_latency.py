@@ -155,7 +155,7 @@ async def by_udp(seconds: float) -> None:
 
 async def by_websocket(seconds: float) -> None:
     """Through a server."""
-    with tempfile.TemporaryDirectory() as folder, served(Path(folder)) as port:
+    with tempfile.TemporaryDirectory() as folder, served(Path(folder)) as (port, _):
         async with Client(f"http://127.0.0.1:{port}", name="bench") as client:
             await client.take_lease(RIG)
             await client.command(RIG, "connect")

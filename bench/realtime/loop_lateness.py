@@ -90,7 +90,7 @@ async def measure(seconds: float, viewers: int) -> None:
         print(f"{'':44s} {'p50':>8s} {'p99':>8s} {'p99.9':>8s} {'max us':>9s} {'missed':>7s} {'ticks':>8s}", flush=True)
         late = bare(seconds)
         print(row("bare SCHED_FIFO loop, alone", late, int((late >= 1000).sum())), flush=True)
-        with served(root / "data") as port:
+        with served(root / "data") as (port, _):
             status, body = post(port, f"/rigs/{RIG}/lease", {"action": "take"})
             assert status == 200, body
             config = RigConfig(RIG, rig, root / "data" / "processes" / RIG, root / "data" / "runs")

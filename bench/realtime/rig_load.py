@@ -48,16 +48,17 @@ def get(port: int, path: str) -> bytes:
 
 
 @contextlib.contextmanager
-def served(data: Path) -> Iterator[int]:
-    """`fullpose serve` on a free port of loopback."""
-    command = [sys.executable, "-c", "from fullpose_server.cli import main; main()", "serve", "--port", "0"]
+def served(data: Path, files: int | None = None) -> Iterator[tuple[int, int]]:
+    """`fullpose serve` on a free port of loopback, with at most so many files open: port and process."""
+    command = [] if files is None else ["prlimit", f"--nofile={files}:{files}"]
+    command += [sys.executable, "-c", "from fullpose_server.cli import main; main()", "serve", "--port", "0"]
     command += ["--data-dir", str(data)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
     try:
         port = int(process.stdout.readline().rsplit(":", 1)[1])
         get(port, "/health")
-        yield port
+        yield port, process.pid
     finally:
         process.terminate()
         process.wait(60)

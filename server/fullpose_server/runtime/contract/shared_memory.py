@@ -43,6 +43,7 @@ HEADER = np.dtype(
         ("estop_done_ns", "<i8"),  # the request that was handled last
         ("estop_wrote_ns", "<i8"),  # when its first braking command was written
         ("stop_done_ns", "<i8"),
+        ("stop_wrote_ns", "<i8"),
         # Written by the server.
         ("server_pid", "<i8"),
         ("server_beat_ns", "<i8"),

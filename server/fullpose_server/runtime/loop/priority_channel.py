@@ -17,7 +17,7 @@ class PriorityChannel:
         self._header = header
         self._clock = clock
         self._obeyed: list[tuple[str, int]] = []
-        self._estop_unwritten = False
+        self._unwritten: list[str] = []
 
     def asked(self) -> list[tuple[Command, str]]:
         """What was asked since the last tick, and by whom."""
@@ -28,14 +28,15 @@ class PriorityChannel:
                 acquire()
                 found.append((command, bytes(self._header[f"{channel}_who"][0]).decode("utf-8", "replace")))
                 self._obeyed.append((channel, asked))
-                self._estop_unwritten = channel == "estop" or self._estop_unwritten
+                self._unwritten.append(channel)
         return found
 
     def written(self) -> None:
         """A command was written to the drive."""
-        if self._estop_unwritten:
-            self._estop_unwritten = False
-            self._header["estop_wrote_ns"] = self._clock.monotonic_ns()
+        if self._unwritten:
+            for channel in self._unwritten:
+                self._header[f"{channel}_wrote_ns"] = self._clock.monotonic_ns()
+            self._unwritten.clear()
 
     @property
     def waiting(self) -> bool:
