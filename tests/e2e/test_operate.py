@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
-from websockets.sync.client import connect
 
 from tests.e2e.conftest import FLIGHT, TABLET, Pages, Server
 from tests.e2e.console import FRAMES, SLOW_MS, SOON_MS, Console
 from tests.e2e.picture import changed, colours, dominance
+from tests.support.sockets import connect
 
 pytestmark = pytest.mark.browser
 

@@ -25,7 +25,7 @@ GOOD = HEADER + "".join(
 FAST = HEADER + "".join(f"{k / 100},0,0,{40 * k}\n" for k in range(50))
 
 
-def fullpose(*arguments: str | Path, timeout: float = 120.0) -> subprocess.CompletedProcess[str]:
+def fullpose(*arguments: str | Path, timeout: float = 600.0) -> subprocess.CompletedProcess[str]:
     command = [
         sys.executable,
         "-W",

@@ -7,9 +7,9 @@ import time
 from pathlib import Path
 
 import httpx
-from websockets.sync.client import connect
 
 from tests.support.serving import running, start
+from tests.support.sockets import connect
 from tests.support.waiting import until
 
 
@@ -18,7 +18,7 @@ def test_demo_prints_the_address_and_flies_a_real_flight(tmp_path: Path) -> None
         assert url.startswith("http://127.0.0.1:")
         page = httpx.get(url)
         assert page.headers["content-type"].startswith("text/html")
-        with connect(f"ws{url[4:]}/api/v1/rigs/vertical-4/stream", proxy=None, max_size=None) as stream:
+        with connect(f"ws{url[4:]}/api/v1/rigs/vertical-4/stream") as stream:
             stream.send(json.dumps({"type": "subscribe", "topics": ["session", "telemetry"], "rate_hz": 20}))
             moved: list[float] = []
             end = time.monotonic() + 90.0

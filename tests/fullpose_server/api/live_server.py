@@ -11,12 +11,13 @@ from typing import Any
 
 import httpx
 import uvicorn
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
 from fullpose_server.app import create_app
 from fullpose_server.cli._serving import bind
 from fullpose_server.settings import Settings
 from tests.support.loop_watch import LoopWatch, watched_loop
+from tests.support.sockets import connect
 from tests.support.waiting import until
 
 LOOP_THREAD = "live server"
@@ -48,7 +49,7 @@ class LiveServer:
         return plan
 
     def stream(self, rig: str = "vertical-4", **options: Any) -> ClientConnection:
-        return connect(f"{self.ws}/rigs/{rig}/stream", proxy=None, max_size=None, **options)
+        return connect(f"{self.ws}/rigs/{rig}/stream", **options)
 
 
 class Operator:

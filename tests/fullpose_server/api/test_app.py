@@ -10,7 +10,6 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
 
 from fullpose.registry import method_names
 from fullpose_server.api.console import console
@@ -19,6 +18,7 @@ from fullpose_server.app import create_app
 from fullpose_server.settings import Settings, is_loopback
 from fullpose_server.wiring import DataDirInUseError
 from tests.fullpose_server.api.live_server import LiveServer
+from tests.support.sockets import connect
 
 
 def test_a_foreign_page_may_look_and_not_touch(server: LiveServer) -> None:
@@ -31,7 +31,7 @@ def test_a_foreign_page_may_look_and_not_touch(server: LiveServer) -> None:
     own = {"origin": server.url}
     assert server.http.post("/rigs/nowhere/lease", headers=own).status_code == 404
     for path in ("/api/v1/solve", "/scene/vertical-4/"):
-        with pytest.raises(InvalidStatus), connect(f"ws{server.url[4:]}{path}", origin="null", proxy=None):
+        with pytest.raises(InvalidStatus), connect(f"ws{server.url[4:]}{path}", origin="null"):
             pass
 
 

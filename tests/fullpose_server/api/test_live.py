@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
 from fullpose.kinematics import payload_attitude
 from fullpose.rig import builtin_rigs
@@ -20,6 +20,7 @@ from fullpose_server.api.streams.live_link import split
 from fullpose_server.runtime.live.packets import REPLY_SIZE, Kind, LiveStatus, decode_reply, encode_sample
 from tests.fullpose_server.api.live_server import LiveServer, Operator, live_server
 from tests.fullpose_server.api.test_stream import received
+from tests.support.sockets import connect
 from tests.support.waiting import until
 
 RIG = "vertical-4"

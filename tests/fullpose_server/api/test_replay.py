@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
 from fullpose.kinematics import payload_attitude
 from fullpose.rig import FRAMES, builtin_rigs
@@ -21,11 +21,12 @@ from fullpose_server.session.states import STATES
 from tests.fullpose_server.api.live_server import LiveServer
 from tests.fullpose_server.api.test_stream import received, subscribe
 from tests.fullpose_server.scene.browser_side import Viewer
+from tests.support.sockets import connect
 from tests.support.waiting import until
 
 
 def replay(server: LiveServer, run: str, **options: Any) -> ClientConnection:
-    return connect(f"{server.ws}/runs/{run}/stream", proxy=None, max_size=None, **options)
+    return connect(f"{server.ws}/runs/{run}/stream", **options)
 
 
 def say(stream: ClientConnection, kind: str, **fields: Any) -> None:

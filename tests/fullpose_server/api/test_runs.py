@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from websockets.sync.client import connect
 
 from fullpose_server.runtime.contract.telemetry import SAMPLE
 from fullpose_server.runtime.recording.mcap_reader import is_whole, read_samples
@@ -17,6 +16,7 @@ from fullpose_server.runtime.recording.mcap_writer import RunRecord
 from fullpose_server.runtime.recording.run_index import RunFiles
 from tests.fullpose_server.api.live_server import LiveServer, Operator
 from tests.fullpose_server.api.test_stream import received
+from tests.support.sockets import connect
 from tests.support.waiting import until
 
 
@@ -120,7 +120,7 @@ def test_an_incident_is_listed_as_one_and_can_be_played(server: LiveServer, run:
     assert (line["incident"], line["rig"], line["who"]) == ("estop", "vertical-4", "ann")
     assert (line["complete"], line["plan_id"]) == (True, None)
     assert line["duration_s"] > 1.0
-    with connect(f"{server.ws}/runs/{line['id']}/stream", proxy=None, max_size=None) as stream:
+    with connect(f"{server.ws}/runs/{line['id']}/stream") as stream:
         assert received(stream, "hello")["rig"] == "vertical-4"
     (server.settings.data_dir / "runs" / f"{line['id']}.mcap").unlink()
 

@@ -6,13 +6,13 @@ import httpx
 import numpy as np
 import pytest
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
 
 from fullpose.kinematics import payload_attitude
 from fullpose.rig import FRAMES, builtin_rigs
 from fullpose_server.formats.plan_folder import read_plan
 from tests.fullpose_server.api.live_server import LiveServer
 from tests.fullpose_server.scene.browser_side import Viewer
+from tests.support.sockets import connect
 
 PREVIEW = ("preview", *FRAMES)
 
@@ -80,7 +80,7 @@ def test_a_payload_that_cannot_be_shown_is_a_problem(server: LiveServer) -> None
         assert answer.headers["content-type"] == "application/problem+json"
         assert answer.json()["type"].endswith("payload-mesh")
         assert "seeker.stl: there is no such file" in answer.json()["detail"]
-        with pytest.raises(InvalidStatus) as refused, connect(f"ws{server.url[4:]}/scene/lost-seeker/", proxy=None):
+        with pytest.raises(InvalidStatus) as refused, connect(f"ws{server.url[4:]}/scene/lost-seeker/"):
             pass
         assert refused.value.response.status_code == 422
     finally:

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from websockets.exceptions import ConnectionClosedError
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
 from fullpose_server.api.attitudes import attitudes
 from tests.fullpose_server.api.live_server import LOOP_THREAD, LiveServer
+from tests.support.sockets import connect
 
 TIME = np.arange(300) * 0.01
 EULER = np.column_stack([40 * np.sin(TIME), 30 * np.sin(2 * TIME), 20 * np.sin(3 * TIME)])
@@ -81,7 +82,7 @@ def exchange(stream: ClientConnection, message: dict[str, Any] | str) -> dict[st
 def test_samples_are_solved_as_they_come_and_give_what_the_batch_gives(server: LiveServer) -> None:
     rows: list[list[float]] = []
     errors: list[float] = []
-    with connect(f"{server.ws}/solve", proxy=None) as stream:
+    with connect(f"{server.ws}/solve") as stream:
         opened = exchange(stream, {"type": "open", "rig": "vertical-4", "method": "exact"})
         assert opened == {"type": "opened", "rig": "vertical-4", "method": "exact"}
         for part in (slice(0, 1), slice(1, 2), slice(2, 200), slice(200, 300)):
@@ -98,7 +99,7 @@ def test_samples_are_solved_as_they_come_and_give_what_the_batch_gives(server: L
 
 def test_a_refused_message_leaves_the_flight_as_it_was(server: LiveServer) -> None:
     one = {"type": "samples", "time_s": [0.0], "q": [[1, 0, 0, 0]]}
-    with connect(f"{server.ws}/solve", proxy=None) as stream:
+    with connect(f"{server.ws}/solve") as stream:
         assert exchange(stream, one)["problem"]["type"].endswith("not-open")
         assert exchange(stream, "{")["type"] == "problem"
         assert exchange(stream, {"type": "open", "rig": "vertical-4", "method": "plan"})["type"] == "problem"
@@ -125,7 +126,7 @@ ONE = {"type": "samples", "time_s": [0.0], "q": [[1, 0, 0, 0]]}
     ],
 )
 def test_every_message_that_is_none_has_an_answer_and_changes_nothing(server: LiveServer, message: str | bytes) -> None:
-    with connect(f"{server.ws}/solve", proxy=None) as stream:
+    with connect(f"{server.ws}/solve") as stream:
         assert exchange(stream, OPEN)["type"] == "opened"
         stream.send(message)
         answer = json.loads(stream.recv(timeout=30.0))
@@ -135,7 +136,7 @@ def test_every_message_that_is_none_has_an_answer_and_changes_nothing(server: Li
 
 @pytest.mark.parametrize("times", [[1e-300], [1e308], [-1.0], [0.0], [0.1, 0.1 + 1e-12]])
 def test_times_beyond_reason_are_refused_and_do_not_spoil_the_flight(server: LiveServer, times: list[float]) -> None:
-    with connect(f"{server.ws}/solve", proxy=None) as stream:
+    with connect(f"{server.ws}/solve") as stream:
         exchange(stream, OPEN)
         assert exchange(stream, ONE)["type"] == "solved"
         refused = exchange(stream, ONE | {"time_s": times, "q": [[1, 0, 0, 0]] * len(times)})
@@ -146,7 +147,7 @@ def test_times_beyond_reason_are_refused_and_do_not_spoil_the_flight(server: Liv
 
 def test_a_rig_file_that_is_broken_is_a_problem_and_the_stream_goes_on(server: LiveServer) -> None:
     broken = server.settings.data_dir / "rigs" / "broken.toml"
-    with connect(f"{server.ws}/solve", proxy=None) as stream:
+    with connect(f"{server.ws}/solve") as stream:
         broken.write_text("name = 1")
         try:
             assert exchange(stream, OPEN | {"rig": "broken"})["problem"]["type"].endswith(":file")
@@ -161,7 +162,7 @@ def test_a_fault_of_the_servers_own_is_told_and_the_stream_is_closed(
     def fail(*_: object) -> None:
         raise RuntimeError("a fault")
 
-    with connect(f"{server.ws}/solve", proxy=None) as stream:
+    with connect(f"{server.ws}/solve") as stream:
         exchange(stream, OPEN)
         monkeypatch.setattr("fullpose_server.api.routes.solve.attitude_errors", fail)
         assert exchange(stream, ONE)["problem"]["type"].endswith(":internal")
@@ -180,7 +181,7 @@ def test_no_first_sample_is_solved_on_the_event_loop(server: LiveServer, monkeyp
         return attitudes(message)
 
     monkeypatch.setattr("fullpose_server.api.routes.solve.attitudes", noted)
-    with connect(f"{server.ws}/solve", proxy=None) as stream:
+    with connect(f"{server.ws}/solve") as stream:
         exchange(stream, OPEN)
         assert exchange(stream, ONE)["type"] == "solved"
     assert server.http.post("/solve", json={"rig": "vertical-4"} | {k: ONE[k] for k in ("time_s", "q")}).is_success

@@ -14,9 +14,9 @@ from urllib.parse import urlsplit
 
 import httpx
 import pytest
-from websockets.sync.client import connect
 
 from tests.support.serving import running
+from tests.support.sockets import connect
 from tests.support.waiting import until
 
 RIG = "/api/v1/rigs/vertical-4"
@@ -95,7 +95,7 @@ def test_a_stop_needs_neither_the_server_nor_the_end_of_its_body(served: Served)
 
 
 def test_the_channel_outlives_a_server_that_hangs(served: Served) -> None:
-    with connect(f"ws{served.url[4:]}/api/v1/stop", proxy=None) as channel:
+    with connect(f"ws{served.url[4:]}/api/v1/stop") as channel:
         os.kill(served.process.pid, signal.SIGSTOP)
         try:
             channel.send(json.dumps({"type": "ping", "t": 2.5}))

@@ -7,9 +7,10 @@ from typing import Any
 import msgspec
 import numpy as np
 import zstandard
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
 from fullpose_server.runtime.contract.telemetry import SAMPLE
+from tests.support.sockets import connect
 
 PATIENCE_S = 20.0
 

@@ -4,13 +4,13 @@ import httpx
 import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
-from websockets.sync.client import connect
 
 from fullpose.kinematics import payload_attitude
 from fullpose.rig import builtin_rigs
 from fullpose_server.scene.proxy import HIDE_CHROME
 from tests.fullpose_server.scene.browser_side import CAMERA, Viewer, browser_message, sample
 from tests.fullpose_server.scene.conftest import Served
+from tests.support.sockets import connect
 
 
 def test_page_comes_through_without_visers_controls(served: Served) -> None:
@@ -81,7 +81,7 @@ def test_no_browser_can_open_visers_tunnel_to_the_internet(served: Served, monke
 
 def test_unknown_rig_has_no_websocket(served: Served) -> None:
     with pytest.raises(InvalidStatus) as refused:
-        connect(f"ws://{served.address}/scene/nowhere/", proxy=None)
+        connect(f"ws://{served.address}/scene/nowhere/")
     assert refused.value.response.status_code == 403
 
 

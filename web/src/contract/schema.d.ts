@@ -2588,20 +2588,29 @@ export interface components {
          * @description The answer to stop and estop: what the session was and is.
          */
         Stopped: {
-            /**
-             * Command
-             * @enum {string}
-             */
-            command: "stop" | "estop";
+            /** Command */
+            command: string;
             /** Revision */
             revision: number;
             state_after: components["schemas"]["State"];
             state_before: components["schemas"]["State"];
             /**
+             * Stop Category
+             * @description Of stop and estop, IEC 60204-1: 1, stopped under control, then power off; 2, power stays on. No safety function
+             * @default null
+             */
+            stop_category: (1 | 2) | null;
+            /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             type: "stopped";
+            /**
+             * Unknown
+             * @description Of stop and estop, with 202: the order was given, and this is not known of what came of it
+             * @default null
+             */
+            unknown: string | null;
         };
         /**
          * StopPing

@@ -9,9 +9,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, create_model
 
 from fullpose_server.api.schemas.base import CLIENT_NAME, Problem, Wire
-from fullpose_server.api.schemas.session import SessionOut
+from fullpose_server.api.schemas.session import CommandOut, SessionOut
 from fullpose_server.runtime.contract.telemetry import FIELDS
-from fullpose_server.session.states import State
 
 Topic = Literal["telemetry", "session"]
 Encoding = Literal["json", "binary"]
@@ -152,14 +151,10 @@ class Pong(Wire):
     server_time: float
 
 
-class Stopped(Wire):
+class Stopped(CommandOut):
     """The answer to stop and estop: what the session was and is."""
 
     type: Literal["stopped"] = "stopped"
-    command: Literal["stop", "estop"]
-    state_before: State
-    state_after: State
-    revision: int
 
 
 class StreamProblem(Wire):
