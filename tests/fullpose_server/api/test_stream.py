@@ -77,7 +77,6 @@ def test_every_sample_in_binary_without_a_gap(operator: Operator, server: LiveSe
             assert seq == rows["seq"][-1]
             sequences += rows["seq"].tolist()
     assert sequences == list(range(sequences[0], sequences[0] + len(sequences)))
-    assert len(sequences) > 50
 
 
 def test_a_client_that_comes_back_is_sent_what_it_missed(operator: Operator, server: LiveServer) -> None:
