@@ -4,7 +4,8 @@ What a request needs is read, checked and made ready first; then the session dec
 ordered. A refusal changes nothing, wherever it comes from.
 """
 
-from typing import TypeAlias
+from collections.abc import Callable
+from typing import Protocol, TypeAlias
 
 from fullpose_server.drives.base import DriveError
 from fullpose_server.runtime.contract import messages
@@ -24,6 +25,21 @@ Given: TypeAlias = GivenOf[Load, PointMove]
 _AT_ONCE = (Command.STOP, Command.ESTOP)  # need neither lease nor arguments
 
 
+class Requests(Protocol):
+    """Where commands come from."""
+
+    def poll(self) -> None:
+        """Have what is waiting answered, a little of it."""
+        ...
+
+    def close(self) -> None:
+        """No more."""
+        ...
+
+
+Serve: TypeAlias = Callable[[Callable[[messages.Request], messages.Answer]], Requests]
+
+
 class CommandHandler:
     """Answers for one rig."""
 
@@ -32,6 +48,7 @@ class CommandHandler:
         self._executor = executor
         self._publisher = publisher
         self._deadlines = deadlines
+        self._terminated = False
 
     def answer(self, request: messages.Request) -> messages.Answer:
         """The answer to `request`; a refusal is an answer too."""
@@ -84,6 +101,20 @@ class CommandHandler:
         if command is Command.ESTOP:
             self._executor.alarm("estop", Severity.EMERGENCY, f"E-stop by {who or 'an unnamed operator'}")
         self._executor.do(ordered)
+
+    def terminate(self) -> None:
+        """On SIGTERM: see `end_where_asked`."""
+        self._terminated = True
+
+    def end_where_asked(self, now: float) -> None:
+        """After `terminate`: the process ends, at rest; E-stop first where the rig moves."""
+        p = self._parts
+        if not self._terminated:
+            return
+        if not p.machine.moving:
+            p.state.ending = True
+        elif p.machine.state is not State.ESTOPPED:
+            self.by_priority(Command.ESTOP, "SIGTERM", now)
 
     def _exit(self, who: str, now: float) -> None:
         if self._parts.machine.moving:

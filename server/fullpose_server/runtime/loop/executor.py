@@ -45,6 +45,8 @@ class Executor:
         self.do(machine.event(event))
         if machine.state is not before:
             self._parts.log.add("transition", before=before, after=machine.state, trigger=str(event))
+        if event is Event.AT_REST:
+            self.rest()
 
     def do(self, orders: tuple[Order, ...]) -> None:
         """Do the orders of one transition; and what every transition brings with it."""

@@ -20,6 +20,8 @@ from fullpose_server.session.states import Event
 _LINK_LOST, _STALE_WRITE = int(Status.LINK_LOST), int(Status.STALE_WRITE)
 _BROKEN = int(Status.FAULT | Status.ENCODER | Status.WATCHDOG)
 _RECORDER_SILENT_S = 1.0
+_AT_REST = math.radians(0.5)  # [rad/s] a table slower than this that brakes by itself counts as stopped
+_BRAKE_TIMEOUT_S = 5.0
 _ORDER_S = 0.2  # for an order to reach the drive: the first move after arming is not far yet
 _PLAN_LATE_S = 0.5  # ten times as long as between two plans of a preview
 
@@ -112,6 +114,10 @@ class Monitors:
         }[word]
         return Violation(Finding(f"drive_{word}", True, told, frame, math.nan, math.nan, ""), Event.FAULT, True)
 
+    def rests(self, rate: Array, braking_s: float) -> bool:
+        """Whether a table that brakes by itself counts as stopped: rate (4,) [rad/s] measured, braking for so long."""
+        return bool(np.abs(rate).max() < _AT_REST) or braking_s > _BRAKE_TIMEOUT_S
+
     def measured(
         self, measured: Array, due: Array, target: Array, live: LiveView | None
     ) -> tuple[float, list[Violation]]:
@@ -157,8 +163,8 @@ class Monitors:
             found.append(Violation(Finding("disk_low", False, text, None, free, least, "MB")))
         return found
 
-    def live(self, live: LiveView) -> list[Violation]:
-        """The live source's samples, and their age."""
+    def live(self, live: LiveView, *, lost: bool) -> list[Violation]:
+        """The live source's samples, and their age; `lost`: none came for too long, and the session stops the rig."""
         found: list[Violation] = []
         if live.heard:
             stale: Tolerance = self._config.guard.stale_ms
@@ -176,4 +182,7 @@ class Monitors:
         ):
             if count:
                 found.append(said(f"live_{word}", text))
+        if lost:
+            text = f"no sample of the live source for {live.age_ms:.0f} ms"
+            found.append(Violation(Finding("live_source_lost", False, text, None, live.age_ms, math.nan, "ms")))
         return found

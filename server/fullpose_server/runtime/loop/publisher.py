@@ -26,10 +26,12 @@ class Publisher:
         self._published = -1
         self._published_at = 0.0
 
-    def count(self, lateness_ns: int) -> None:
-        """Count one tick."""
+    def count(self, lateness_ns: int, missed: int) -> None:
+        """Count one tick, and the deadlines that were missed before it."""
         header = self._parts.shared.header
         header["ticks"] += 1
+        if missed:
+            header["misses"] += missed
         self._parts.shared.histogram[min(lateness_ns // 1000, BUCKETS - 1)] += 1
         if lateness_ns > int(header["max_lateness_ns"][0]):
             header["max_lateness_ns"] = lateness_ns
