@@ -64,8 +64,7 @@ class Services:
 
 # Async, though they wait for nothing: FastAPI hands what is not to a thread, and an E-stop would wait for that.
 async def _services(connection: HTTPConnection) -> Services:
-    services = connection.app.state.services
-    assert isinstance(services, Services)
+    services: Services = connection.app.state.services
     return services
 
 

@@ -25,7 +25,7 @@ from fullpose_server.runtime.live.packets import (
     decode_sample,
     encode_reply,
 )
-from fullpose_server.runtime.live.steppers import LiveSettings, LiveStep, live_step
+from fullpose_server.runtime.live.steppers import LiveError, LiveSettings, LiveStep, live_step
 from fullpose_server.runtime.motion.path_player import attitude_error
 
 _PER_TICK = 16
@@ -129,11 +129,16 @@ class LiveSource:
             self._step.close()
             self._step = None
 
+    def _loaded(self) -> LiveStep:
+        if self._step is None:
+            raise LiveError("no live source is loaded")  # a fault of ours: the session does not order it
+        return self._step
+
     def begin(self, pose: Array, now: float) -> None:
         """Follow from rest at `pose` (4,) [rad]; what the source sent before counts no more."""
-        assert self._step is not None
+        step = self._loaded()
         self._buffer.reset()
-        self._step.begin(pose)
+        step.begin(pose)
         self._begun = now
         self._following = True
         self.acquired = False
@@ -177,20 +182,18 @@ class LiveSource:
         return True
 
     def _take(self, sample: LiveSample, now: float) -> bool:
-        assert self._step is not None
-        steps = self._buffer.steps
+        step, clock_steps = self._loaded(), self._buffer.steps
         if not self._buffer.add(sample, now):
             return False
-        if self._buffer.steps != steps:
-            self._step.void()
+        if self._buffer.steps != clock_steps:
+            step.void()
         ahead = -self._buffer.age(now)
         if ahead > 0.0:
-            self._step.announce(ahead, sample.quaternion)
+            step.announce(ahead, sample.quaternion)
         return True
 
     def tick(self, x1: Array, v1: Array, x: Array, q: Array) -> bool:  # noqa: ARG002
         """Fill the next command x and the attitude q it follows; False where the source is lost."""
-        assert self._step is not None
         age = self._buffer.age(self._now)
         if math.isinf(age):
             # Nothing yet: stand, for a while.
@@ -204,7 +207,7 @@ class LiveSource:
         if age * 1e3 > self._config.extrapolate_ms:
             return False
         self._buffer.at(self._now, q)
-        angles, code = self._step.follow(q)
+        angles, code = self._loaded().follow(q)
         self.limited = code != 0
         self.acquired = self.acquired or not self.limited
         x[:] = angles

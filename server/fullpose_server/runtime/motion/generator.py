@@ -5,8 +5,9 @@ refuses is dropped, and braking starts from the last command that was written.
 """
 
 import math
+from dataclasses import dataclass
 from enum import Enum, auto
-from typing import Protocol
+from typing import ClassVar, Protocol, TypeAlias, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +43,54 @@ class LiveFollower(Protocol):
         ...
 
 
+class MotionError(Exception):
+    """Motion was asked for something for which nothing is loaded: a fault of ours, the session does not order it."""
+
+
+@dataclass(frozen=True)
+class Resting:
+    """Stay."""
+
+    mode: ClassVar = Mode.REST
+
+
+@dataclass(frozen=True)
+class Moving:
+    """Make `move`; `event` is reported when it has ended."""
+
+    mode: ClassVar = Mode.POINT
+    move: PointMove
+    event: Event
+
+
+@dataclass(frozen=True)
+class Playing:
+    """Play a plan."""
+
+    mode: ClassVar = Mode.PATH
+    player: PathPlayer
+
+
+@dataclass(frozen=True)
+class Following:
+    """Follow a live source."""
+
+    mode: ClassVar = Mode.LIVE
+    live: LiveFollower
+
+
+@dataclass(frozen=True)
+class Braking:
+    """Brake by `deceleration` (4,) [rad/s^2]."""
+
+    mode: ClassVar = Mode.BRAKE
+    deceleration: Array
+
+
+Task: TypeAlias = Resting | Moving | Playing | Following | Braking
+_REST = Resting()
+
+
 class Motion:
     """One rig's motion. `x`, `v`, `a` hold the proposal, `x1`, `v1` the last command; (4,) [rad], base first."""
 
@@ -50,16 +99,12 @@ class Motion:
         self._config = config
         self._dt = 1.0 / rate_hz
         self._rate_hz = rate_hz
-        self.mode = Mode.REST
+        self._task: Task = _REST
         self.x, self.v, self.a = np.zeros(4), np.zeros(4), np.zeros(4)
         self.q = np.full(4, math.nan)
         self.x1, self.v1 = np.zeros(4), np.zeros(4)
         self.q1 = np.full(4, math.nan)
-        self.player: PathPlayer | None = None
-        self._point: PointMove | None = None
-        self._point_event = Event.THERE
-        self._live: LiveFollower | None = None
-        self._deceleration = np.zeros(4)
+        self._player: PathPlayer | None = None
         self._limits = (rig.position_min, rig.position_max, rig.max_acceleration)
 
     # --- what to do ---
@@ -71,7 +116,7 @@ class Motion:
 
     def bind(self, player: PathPlayer) -> None:
         """Take a player that was made ready."""
-        self.player = player
+        self._player = player
 
     def load(self, plan: PlanFolder) -> None:
         """Make ready to play `plan`."""
@@ -79,19 +124,18 @@ class Motion:
 
     def unload(self) -> None:
         """Forget the plan."""
-        self.player = None
+        self._player = None
 
     def rest_at(self, position: Array) -> None:
         """Rest at `position`: where the table stands when its drive is enabled, or while the drive itself brakes."""
-        self.mode = Mode.REST
+        self._task = _REST
         self.x[:] = self.x1[:] = position
         self.v[:] = self.v1[:] = self.a[:] = 0.0
         self.q[:] = self.q1[:] = math.nan
 
     def plan_start(self) -> PointMove:
         """The move to where the loaded path begins. Raises `MoveError`."""
-        assert self.player is not None
-        return PointMove(self._rig, self._config, self.x1, self.player.start_pose(self.x1))
+        return PointMove(self._rig, self._config, self.x1, self._loaded().start_pose(self.x1))
 
     def plan_move(self, target: Array) -> PointMove:
         """A move from the last command to `target`. Raises `MoveError`."""
@@ -99,60 +143,61 @@ class Motion:
 
     def go(self, move: PointMove, event: Event) -> None:
         """Make `move`; `event` is reported when it has ended."""
-        self._point, self._point_event = move, event
-        self.mode = Mode.POINT
+        self._task = Moving(move, event)
 
     def run(self) -> None:
         """Play the path from its start."""
-        assert self.player is not None
-        self.player.rewind()
-        self.mode = Mode.PATH
+        player = self._loaded()
+        player.rewind()
+        self._task = Playing(player)
 
     def hold(self, on: bool) -> None:
         """Slow down to a hold on the path, or back to full speed."""
-        assert self.player is not None
-        self.player.scale_to(0.0 if on else 1.0)
+        self._loaded().scale_to(0.0 if on else 1.0)
 
     def follow(self, live: LiveFollower) -> None:
         """Follow a live source."""
-        self._live = live
-        self.mode = Mode.LIVE
+        self._task = Following(live)
 
     def brake(self, *, fastest: bool) -> None:
         """Brake from the last command: by the configured share of each limit, or as fast as the limits allow."""
         share = 1.0 if fastest else self._config.stop_fraction
         unlimited = math.radians(self._config.unlimited_brake_deg_s2)
         wanted = deceleration_for(share, self.x1, self.v1, *self._limits, unlimited)
-        # An E-stop during a stop may brake harder, never softer.
-        self._deceleration = np.maximum(wanted, self._deceleration) if self.mode is Mode.BRAKE else wanted
-        self.mode = Mode.BRAKE
+        if isinstance(self._task, Braking):  # an E-stop during a stop may brake harder, never softer
+            wanted = np.maximum(wanted, self._task.deceleration)
+        self._task = Braking(wanted)
+
+    def _loaded(self) -> PathPlayer:
+        if self._player is None:
+            raise MotionError("no plan is loaded")
+        return self._player
 
     # --- each tick ---
 
     def tick(self) -> Event | None:
         """Propose the next command in x and q; returns what has happened, if anything."""
         self.q[:] = math.nan
-        match self.mode:
-            case Mode.PATH:
-                assert self.player is not None
-                if self.player.tick(self.x1, self.v1, self.x, self.q) < 0:
-                    self.mode = Mode.REST
+        match self._task:
+            case Playing(player=player):
+                if player.tick(self.x1, self.v1, self.x, self.q) < 0:
+                    self._task = _REST
                     return Event.END
-            case Mode.POINT:
-                assert self._point is not None
-                if self._point.tick(self._dt, self.x):
-                    self.mode = Mode.REST
-                    return self._point_event
-            case Mode.LIVE:
-                assert self._live is not None
-                if not self._live.tick(self.x1, self.v1, self.x, self.q):
+            case Moving(move=move, event=event):
+                if move.tick(self._dt, self.x):
+                    self._task = _REST
+                    return event
+            case Following(live=live):
+                if not live.tick(self.x1, self.v1, self.x, self.q):
                     return Event.SOURCE_LOST
-            case Mode.BRAKE:
-                if brake_step(self._dt, self._deceleration, self.x1, self.v1, self.x, self.v):
-                    self.mode = Mode.REST
+            case Braking(deceleration=deceleration):
+                if brake_step(self._dt, deceleration, self.x1, self.v1, self.x, self.v):
+                    self._task = _REST
                     return Event.AT_REST
-            case Mode.REST:
+            case Resting():
                 self.x[:] = self.x1
+            case _:
+                assert_never(self._task)
         return None
 
     def commit(self) -> None:
@@ -168,21 +213,26 @@ class Motion:
         return float(attitude_error(axes, self.x, self.q))
 
     @property
+    def mode(self) -> Mode:
+        """What drives the command."""
+        return self._task.mode
+
+    @property
     def stale(self) -> bool:
         """Whether a live source is followed and late: the attitude is extrapolated."""
-        return self.mode is Mode.LIVE and self._live is not None and self._live.stale
+        return isinstance(self._task, Following) and self._task.live.stale
 
     @property
     def limited(self) -> bool:
         """Whether limits keep the command from the attitude it follows."""
-        return self.mode is Mode.LIVE and self._live is not None and self._live.limited
+        return isinstance(self._task, Following) and self._task.live.limited
 
     @property
     def path_time_s(self) -> float:
         """The flight's time; nan off the path."""
-        return self.player.time_s if self.mode is Mode.PATH and self.player is not None else math.nan
+        return self._task.player.time_s if isinstance(self._task, Playing) else math.nan
 
     @property
     def path_scale(self) -> float:
         """The path's time scale; nan off the path."""
-        return self.player.scale if self.mode is Mode.PATH and self.player is not None else math.nan
+        return self._task.player.scale if isinstance(self._task, Playing) else math.nan
