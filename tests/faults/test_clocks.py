@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from fullpose_server.runtime.recording.mcap_reader import is_whole, read_samples, recover_messages
-from tests.fullpose_server.runtime.rigs import codes_of, config_of, hosted, plan_of, written
-from tests.fullpose_server.runtime.supervisor.test_rig_client import within_limits
+from tests.fullpose_server.runtime.rigs import codes_of, config_of, hosted, plan_of, within_limits, written
 
 # Setting the real clock would reach every process of the machine. In the processes of the rig, which begin with this
 # module, the clock is the machine's and what the file says [s].

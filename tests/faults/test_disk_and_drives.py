@@ -22,8 +22,7 @@ from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import STATES
 from tests.fullpose_server.drives.relay import Relay, relay
 from tests.fullpose_server.drives.test_udp import emulator
-from tests.fullpose_server.runtime.rigs import config_of, hosted, plan_of, written
-from tests.fullpose_server.runtime.supervisor.test_rig_client import within_limits
+from tests.fullpose_server.runtime.rigs import config_of, hosted, plan_of, within_limits, written
 
 
 @contextlib.contextmanager

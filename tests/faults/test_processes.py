@@ -22,8 +22,7 @@ from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.recording.mcap_reader import read_events
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.machine import SilencePolicy
-from tests.fullpose_server.runtime.rigs import Operator, codes_of, config_of, hosted, plan_of, written
-from tests.fullpose_server.runtime.supervisor.test_rig_client import within_limits
+from tests.fullpose_server.runtime.rigs import Operator, codes_of, config_of, hosted, plan_of, within_limits, written
 
 CAMPAIGN = "FULLPOSE_FAULTS" in os.environ
 MOMENTS = int(os.environ.get("FULLPOSE_FAULTS", "3"))

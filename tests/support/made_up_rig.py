@@ -10,6 +10,7 @@ from fullpose_server.drives.simulated import SimulatedDrive, SimulatedOptions
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.shared_memory import Shared
+from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.live.packets import Kind, encode_sample
 from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.loop.clock import seconds
@@ -25,8 +26,8 @@ class Link:
     """A datagram socket in memory."""
 
     def __init__(self) -> None:
-        self.waiting: list[bytes] = []
-        self.replies: list[bytes] = []
+        self.waiting: list[tuple[bytes, str]] = []  # datagrams and their senders
+        self.replies: list[tuple[bytes, str]] = []  # and their receivers
 
     def fileno(self) -> int:
         return -1
@@ -34,10 +35,11 @@ class Link:
     def recvfrom(self, size: int, /) -> tuple[bytes, str]:
         if not self.waiting:
             raise BlockingIOError
-        return self.waiting.pop(0)[:size], "source"
+        data, sender = self.waiting.pop(0)
+        return data[:size], sender
 
-    def sendto(self, data: bytes, to: Any, /) -> int:  # noqa: ARG002
-        self.replies.append(data)
+    def sendto(self, data: bytes, to: Any, /) -> int:
+        self.replies.append((data, to))
         return len(data)
 
     def close(self) -> None:
@@ -51,8 +53,16 @@ class Recorder:
         return None
 
 
+def level(k: int, t: float) -> bytes:
+    """A sample that stands still."""
+    return encode_sample(Kind.EULER, k, t, (0.0, 0.0, 0.0), ())
+
+
 class MadeUpRig:
-    """Ticks the loop; by default the server, the recorder and the operator are heard all the time."""
+    """Ticks the loop; by default the server, the recorder and the operator are heard all the time.
+
+    `source` makes the sample of each tick while the session is live, from its number and its time [s] after the first.
+    """
 
     def __init__(self, config: RigConfig, memory: Path, options: SimulatedOptions | None = None) -> None:
         self.clock = MadeUpClock()
@@ -65,7 +75,8 @@ class MadeUpRig:
         self.loop = ControlLoop(self.parts, self._serve, leisure)
         self.period_ns = round(1e9 / config.rate_hz)
         self.server_heard = self.owner_heard = self.source_heard = True
-        self.number = self.epoch = self.sequence = 0
+        self.source: Callable[[int, float], bytes] = level
+        self.number = self.epoch = self.sequence = self.sent = 0
         self.config = config
         self.missed = 0
 
@@ -82,6 +93,10 @@ class MadeUpRig:
     @property
     def rig(self) -> Rig:
         return self.config.rig
+
+    @property
+    def rate_hz(self) -> float:
+        return self.config.rate_hz
 
     @property
     def state(self) -> State:
@@ -113,6 +128,19 @@ class MadeUpRig:
         reply = self.say(command, **args)
         assert reply.ok, reply
 
+    def ready(self, **load: Any) -> None:
+        """From its beginning to ready with what `load` says."""
+        self.take()
+        self.tick()
+        self.must("connect")
+        self.tick()
+        self.must("load", **load)
+        self.tick()
+
+    def rows(self) -> Samples:
+        """The telemetry that the ring still has."""
+        return self.shared.ring.since(0, 1 << 20)[0]
+
     def tick(self) -> None:
         """One period passes."""
         self.clock.now += self.period_ns * (1 + self.missed)
@@ -123,8 +151,8 @@ class MadeUpRig:
         if self.owner_heard and self.epoch and self.parts.state.ticks % 50 == 0:
             self.ask("lease", "", {}, "renew")
         if self.source_heard and self.state is State.LIVE:
-            now = seconds(self.clock)
-            self.link.waiting.append(encode_sample(Kind.EULER, self.parts.state.ticks, now, (0.0, 0.0, 0.0), ()))
+            self.link.waiting.append((self.source(self.sent, self.sent / self.config.rate_hz), "source"))
+            self.sent += 1
         self.loop.tick(self.clock.now, 0, self.missed)
 
     def run(self, for_s: float) -> None:

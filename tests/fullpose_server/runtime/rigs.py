@@ -4,7 +4,7 @@ import asyncio
 import contextlib
 from collections.abc import AsyncIterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from fullpose_server.formats.plan_folder import PlanFolder, PlanOrigin, PlanPath
 from fullpose_server.operating import GuardConfig, Tolerance
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.messages import Reply, Snapshot
+from fullpose_server.runtime.contract.telemetry import Flag
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.alarms import Alarm, Severity
 from fullpose_server.session.lease import LeaseToken
@@ -115,6 +116,28 @@ class Operator:
         await self.must("acknowledge")
         reply = await self.at_rest("reset")
         assert reply.ok, reply
+
+
+class Flown(Protocol):
+    """What flew: a rig process, or a rig on a made-up clock."""
+
+    @property
+    def rig(self) -> Rig: ...
+
+    @property
+    def rate_hz(self) -> float: ...
+
+
+def within_limits(rows: np.ndarray, host: Flown) -> None:
+    """Every command of the run, differenced anew from the positions, obeys rate and acceleration."""
+    enabled = (rows["flags"] & Flag.ENABLED) != 0
+    tick = np.diff(rows["tick"]) == 1
+    both = enabled[1:] & enabled[:-1] & tick
+    v = np.diff(rows["demand"], axis=0) * host.rate_hz
+    assert (np.abs(v[both]) <= np.degrees(host.rig.max_rate) * (1 + 1e-6)).all()
+    a = np.diff(v, axis=0) * host.rate_hz
+    three = both[1:] & both[:-1]
+    assert (np.abs(a[three]) <= np.degrees(host.rig.max_acceleration) * (1 + 1e-6) + 1e-4).all()
 
 
 async def ticked(host: RigHost, seconds: float) -> None:

@@ -4,6 +4,7 @@ The loop never waits for the planner. One job is with it at a time; a way that c
 self-motion and nothing else, and `way_age_s` says so. mathematics, section 9.
 """
 
+import math
 import pickle
 import socket
 import subprocess
@@ -17,16 +18,32 @@ from fullpose.plan import Ahead, PreviewOptions, PreviewStepper, Replan
 from fullpose.registry import method_options
 from fullpose.rig import Rig
 from fullpose_server.runtime.live.planner_process import MESSAGE
-from fullpose_server.runtime.live.steppers import Flight, LiveError, LiveSettings
+from fullpose_server.runtime.live.settings import LiveError, LiveSettings
+from fullpose_server.runtime.live.steppers import Flight
 from fullpose_server.runtime.motion.path_player import attitude_of
 
 FARTHEST_S = 2.0  # of the future
-_READY_S = 60.0  # with no kernel in the cache, compiling takes most of it
-_LEVEL = (1.0, 0.0, 0.0, 0.0)
+LEVEL = (1.0, 0.0, 0.0, 0.0)
+
+
+def compile_preview(rig: Rig, dt: float) -> None:
+    """Compile what the loop calls of a preview: a few ticks, with a way to follow among them. No planner is needed."""
+    pose = rig.home.copy()
+    flight = Flight(rig, dt, pose, lambda start, attitude: PreviewStepper(rig, PreviewOptions(), start, attitude))
+    level = np.array(LEVEL)
+    C = np.empty((1, 3, 3))
+    attitude_of(level, C[0])
+    flight.stepper.offer(np.array([flight.now + 0.1]), C)
+    flight.step(level)
+    time = flight.now + 0.1 * np.arange(3)
+    flight.stepper.adopt(Ahead(1, np.asarray(time), np.tile(pose, (3, 1)), np.zeros((3, 4)), 0, math.inf))
+    for _ in range(3):
+        flight.step(level)
+    flight.stepper.replan()
 
 
 class PreviewStep:
-    """One rig's live preview."""
+    """One rig's live preview. Waits for nothing: until its planner has started there is no foresight."""
 
     def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
         self._rig, self._dt = rig, dt
@@ -38,12 +55,7 @@ class PreviewStep:
         self.preview_s = self._options.preview_s
         if self.preview_s > FARTHEST_S:
             raise LiveError(f"option preview_s = {self.preview_s:g}: expected {FARTHEST_S:g} s at most")
-        # Compiled here, at rest, and not in the first live tick; in the planner too, by the job.
-        self.announce(0.1, _LEVEL)
-        self._flight.step(np.array(_LEVEL))
-        self._planner = Planner(self._flight.stepper.replan())
-        self._flight.stepper.adopt(self._planner.first)
-        self._flight.step(np.array(_LEVEL))
+        self._planner = Planner(self._first_job())
 
     def begin(self, pose: Array) -> None:
         """From rest at `pose` (4,) [rad]."""
@@ -53,6 +65,14 @@ class PreviewStep:
     def _restart(self, pose: Array) -> None:
         self._flight = Flight(self._rig, self._dt, pose, self._stepper)
         self._heard = 0.0  # [s] of this flight, when the planner was last heard
+
+    def _first_job(self) -> Replan:
+        """Something for the planner to begin with, so that its kernels are there when the flight begins."""
+        self.announce(0.1, LEVEL)
+        self._flight.step(np.array(LEVEL))
+        job = self._flight.stepper.replan()
+        self._restart(self._rig.home.copy())
+        return job
 
     def _stepper(self, pose: Array, attitude: Array) -> PreviewStepper:
         return PreviewStepper(self._rig, self._options, pose, attitude)
@@ -89,12 +109,13 @@ class PreviewStep:
 
 
 class Planner:
-    """The planner's process, and the one job that may be with it. Raises `LiveError` where it does not start."""
+    """The planner's process, and the one job that may be with it. Raises `LiveError` where it cannot be started."""
 
     def __init__(self, first: Replan) -> None:
-        """Blocks until the planner has answered the job `first`."""
+        """Starts it with the job `first`; waits for neither."""
         # Messages, whole or not at all, so that nothing is ever half read in the loop.
         self._link, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.busy = self._abandoned = False
         with other:
             for option in (socket.SO_SNDBUF, socket.SO_RCVBUF):
                 self._link.setsockopt(socket.SOL_SOCKET, option, MESSAGE)
@@ -106,21 +127,17 @@ class Planner:
                 "--fd",
                 str(other.fileno()),
             ]
-            self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=(other.fileno(),))
-        self.busy = False
-        self._abandoned = False
-        self._link.settimeout(_READY_S)
-        try:
-            self._link.sendall(pickle.dumps(first, protocol=5))
-            data = self._link.recv(MESSAGE)
-        except OSError as cause:
-            self.close()
-            raise LiveError(f"the preview's planner does not answer: {cause}") from cause
-        if not data:
-            self.close()
-            raise LiveError("the preview's planner ended at its start: see the rig's log")
-        self.first: Ahead = pickle.loads(data)
+            try:
+                self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=(other.fileno(),))
+            except OSError as cause:
+                self._link.close()
+                raise LiveError(f"the preview's planner cannot be started: {cause.strerror}") from cause
         self._link.setblocking(False)
+        self.ask(first)
+
+    def fileno(self) -> int:
+        """Readable when it has answered, or ended."""
+        return self._link.fileno()
 
     def ask(self, job: Replan) -> None:
         """Give it a job. Where it cannot be given (it ended), it stays unasked, and the way grows old."""

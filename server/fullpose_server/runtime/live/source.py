@@ -17,6 +17,7 @@ from fullpose.rig import Rig
 from fullpose_server.runtime.contract.config import LiveConfig
 from fullpose_server.runtime.contract.messages import LiveHealth
 from fullpose_server.runtime.live.buffer import LiveBuffer
+from fullpose_server.runtime.live.factory import live_step
 from fullpose_server.runtime.live.packets import (
     SAMPLE_SIZE,
     LiveReply,
@@ -25,7 +26,8 @@ from fullpose_server.runtime.live.packets import (
     decode_sample,
     encode_reply,
 )
-from fullpose_server.runtime.live.steppers import LiveError, LiveSettings, LiveStep, live_step
+from fullpose_server.runtime.live.settings import LiveError, LiveSettings
+from fullpose_server.runtime.live.steppers import LiveStep
 from fullpose_server.runtime.motion.path_player import attitude_error
 
 _PER_TICK = 16
@@ -113,7 +115,7 @@ class LiveSource:
             each.close()
 
     def ready(self, settings: LiveSettings) -> ReadyLive:
-        """Make ready for `settings`, at rest: may compile. Changes nothing. Raises `LiveError`."""
+        """Make ready for `settings`, at rest. Changes nothing. Raises `LiveError`."""
         return ReadyLive(settings, live_step(self._rig, settings, self._dt))
 
     def bind(self, ready: ReadyLive) -> None:

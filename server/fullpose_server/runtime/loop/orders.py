@@ -11,8 +11,8 @@ import numpy as np
 
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.formats.plan_folder import PlanFolder, PlanFolderError, read_plan, rig_hash
+from fullpose_server.runtime.live.settings import LiveError, LiveSettings
 from fullpose_server.runtime.live.source import LiveSource, ReadyLive
-from fullpose_server.runtime.live.steppers import LiveError, LiveSettings
 from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.path_player import PathPlayer
 from fullpose_server.runtime.motion.point_to_point import MoveError, PointMove

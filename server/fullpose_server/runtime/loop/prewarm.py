@@ -7,6 +7,7 @@ import numpy as np
 from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.live.buffer import LiveBuffer
+from fullpose_server.runtime.live.factory import compile_steps
 from fullpose_server.runtime.live.packets import LiveSample
 from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.limit_guard import Guard
@@ -14,9 +15,10 @@ from fullpose_server.session.states import Event
 
 
 def kernels(config: RigConfig) -> None:
-    """Fly a path of a few samples and a live source's buffer, and throw them away. What is left is the live step's.
+    """Fly a path of a few samples, a live source's buffer and each live method's step, and throw them away.
 
-    A kernel that is first called in mid-flight would be compiled there, on a fresh machine for seconds.
+    A kernel that is first called in mid-flight would be compiled there, on a fresh machine for seconds; one that is
+    first called at `load` would hold up the loop of a rig at rest, and whoever wants it stopped.
     """
     _path(config)
     buffer = LiveBuffer(0.0)
@@ -25,6 +27,7 @@ def kernels(config: RigConfig) -> None:
         buffer.add(LiveSample(k, 0.1 * k, (1.0, 0.0, 0.0, 0.0), None), 0.1 * k)
     for now in (0.05, 0.15):  # interpolated, extrapolated
         buffer.at(now, q)
+    compile_steps(config.rig, 1.0 / config.rate_hz)
 
 
 def _path(config: RigConfig) -> None:

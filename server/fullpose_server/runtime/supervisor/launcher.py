@@ -19,7 +19,7 @@ from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.supervisor.errors import HostError
 
-START_S = 60.0  # with no kernel in the cache, compiling takes most of it
+START_S = 180.0  # with no kernel in the cache, compiling takes most of it
 # The process runs the very packages that run here, wherever they were found.
 _ROOTS = [str(Path(*package.__path__).resolve().parent) for package in (fullpose_server, fullpose)]
 

@@ -20,7 +20,7 @@ from fullpose_server.runtime.supervisor.running import RunningProcesses
 from fullpose_server.session.lease import Lease, LeaseToken
 from fullpose_server.session.states import Command
 
-LOAD_S = 60.0  # a live method that has not been used on this machine compiles first
+LOAD_S = 60.0  # a long plan is read and hashed
 
 
 class RigHost:

@@ -40,12 +40,7 @@ def rig(tmp_path: Path) -> Iterator[MadeUpRig]:
 
 
 def armed(rig: MadeUpRig, plan: Path | None) -> None:
-    rig.take()
-    rig.tick()
-    rig.must("connect")
-    rig.tick()
-    rig.must("load", **({"live": {"method": "exact"}} if plan is None else {"plan_folder": str(plan)}))
-    rig.tick()
+    rig.ready(**({"live": {"method": "exact"}} if plan is None else {"plan_folder": str(plan)}))
     rig.must("arm")
     rig.run(0.1)
     assert rig.state is S.ARMED, rig.codes()

@@ -20,7 +20,7 @@ from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
 from fullpose_server.runtime.motion.limit_guard import Guard
 from fullpose_server.runtime.live.links import open_links
 from fullpose_server.runtime.live.source import LiveSource
-from fullpose_server.runtime.live.steppers import LiveSettings
+from fullpose_server.runtime.live.settings import LiveSettings
 from fullpose_server.runtime.live.packets import Kind, encode_sample
 from fullpose_server.runtime.motion.generator import Mode, Motion
 from fullpose_server.runtime.contract.rig_paths import RigPaths
@@ -58,8 +58,8 @@ def tick():
 LIVE = """
 live = LiveConfig(delay_ms=4.0)
 source = LiveSource(rig, live, 1e-3, open_links(RigPaths(folder), live), time.monotonic)
+before = compiled()  # a load is in the loop's time, too
 source.bind(source.ready(LiveSettings(sys.argv[2])))
-before = compiled()
 link = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
 link.connect(str(folder / "live.sock"))
 source.begin(motion.x1, 0.0)
@@ -79,8 +79,8 @@ source.close()
 PATH = """
 from tests.fullpose_server.runtime.rigs import plan_of
 write_plan(folder / "plan", plan_of(rig, seconds=0.5))
-motion.load(read_plan(folder / "plan"))
 before = compiled()
+motion.load(read_plan(folder / "plan"))
 motion.go(motion.plan_start(), Event.AT_START)
 while tick() is not Event.AT_START:
     pass
@@ -122,7 +122,7 @@ def fly(script: str, *arguments: str) -> dict[str, Any]:
 
 
 def test_a_live_flight_meets_no_kernel_for_the_first_time(tmp_path: Path) -> None:
-    for method in ("exact", "alm", "preview"):
+    for method in ("exact", "alm", "clamped", "preview"):
         folder = tmp_path / method
         folder.mkdir()
         said = fly(LIVE, str(folder), method)

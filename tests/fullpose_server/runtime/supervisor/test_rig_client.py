@@ -10,22 +10,10 @@ from mcap.reader import make_reader
 from fullpose_server.runtime.supervisor.errors import RefusedError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import STATES
-from tests.fullpose_server.runtime.rigs import Operator, config_of, hosted, plan_of, ticked, written
+from tests.fullpose_server.runtime.rigs import Operator, config_of, hosted, plan_of, ticked, within_limits, written
 from tests.support.waiting import soon
 
 FLIGHT = ("running", "held")
-
-
-def within_limits(rows: np.ndarray, host: RigHost) -> None:
-    """Every command of the run, differenced anew from the positions, obeys rate and acceleration."""
-    enabled = (rows["flags"] & 8) != 0
-    tick = np.diff(rows["tick"]) == 1
-    both = enabled[1:] & enabled[:-1] & tick
-    v = np.diff(rows["demand"], axis=0) * host.rate_hz
-    assert (np.abs(v[both]) <= np.degrees(host.rig.max_rate) * (1 + 1e-6)).all()
-    a = np.diff(v, axis=0) * host.rate_hz
-    three = both[1:] & both[:-1]
-    assert (np.abs(a[three]) <= np.degrees(host.rig.max_acceleration) * (1 + 1e-6) + 1e-4).all()
 
 
 def test_a_flight_of_ten_seconds_is_flown_recorded_and_nothing_is_lost(tmp_path: Path) -> None:
