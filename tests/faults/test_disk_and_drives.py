@@ -21,7 +21,7 @@ from fullpose_server.runtime.recording.mcap_reader import is_whole, read_events,
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import STATES
 from tests.fullpose_server.drives.relay import Relay, relay
-from tests.fullpose_server.drives.test_udp import emulator
+from tests.fullpose_server.drives.tables import emulator
 from tests.fullpose_server.runtime.rigs import config_of, hosted, plan_of, within_limits, written
 
 
@@ -149,7 +149,7 @@ def test_a_jump_in_a_plan_is_caught_before_it_is_written(tmp_path: Path) -> None
 
 def test_a_table_that_vanishes_is_a_lost_link_and_can_be_connected_again(tmp_path: Path) -> None:
     async def fly() -> None:
-        with emulator("--rig", "vertical-4", "--watchdog", "1.0") as port:
+        with emulator("--rig", "vertical-4", "--watchdog", "1.0") as (port, _):
             options = {"port": port, "link_lost_s": 0.3}
             config = config_of(tmp_path, rig="vertical-4", drive="udp", drive_options=options, guard=WIDE)
             plan = written(tmp_path / "plan", plan_of(config.rig, 8.0, swing=0.5))
@@ -191,7 +191,7 @@ def test_a_table_that_vanishes_is_a_lost_link_and_can_be_connected_again(tmp_pat
 @contextlib.contextmanager
 def bad_network(tmp_path: Path, *arguments: str) -> Iterator[tuple[Relay, RigConfig]]:
     """A table behind a relay, and the settings of its rig."""
-    with emulator("--rig", "vertical-4", *arguments) as port, relay(port) as network:
+    with emulator("--rig", "vertical-4", *arguments) as (port, _), relay(port) as network:
         options = {"port": network.port, "link_lost_s": 2.0, "connect_s": 10.0}
         yield network, config_of(tmp_path, rig="vertical-4", drive="udp", drive_options=options, guard=WIDE)
 

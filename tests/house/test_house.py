@@ -18,7 +18,6 @@ LONG: set[str] = {"_fly", "_programme", "refine"}
 LONG_KERNELS = {"advance", "fill_nodes", "search"}
 WIDE = 37
 LONG_FILES = 15
-SLEEPING = ("tests/fullpose_server/drives/test_udp.py",)
 
 
 def short(path: Path) -> str:
@@ -82,7 +81,7 @@ def test_no_circle_of_imports() -> None:
 @pytest.mark.parametrize("path", TESTS, ids=short)
 def test_no_test_sleeps(path: Path) -> None:
     """But for the fault and the browser tests, which run real processes; the others wait for what they wait for."""
-    if not short(path).startswith((*WAITING_ALLOWED, *SLEEPING)):
+    if not short(path).startswith(WAITING_ALLOWED):
         assert list(sleeps(path)) == []
 
 

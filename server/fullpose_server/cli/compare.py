@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose
 from fullpose_server.cli._exit import DONE
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import check_outputs
@@ -21,21 +22,15 @@ def register(app: typer.Typer) -> None:
 
 
 def compare(
-    flight: Annotated[
-        Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
-    ],
-    rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
+    flight: FlightFile,
+    rig: RigName,
     methods: Annotated[
         str, typer.Option(help=f"With commas between, options after colons (alm:mode=open_loop), of {METHODS}.")
     ] = METHODS.replace(" ", ""),
     report: Annotated[Path | None, typer.Option(help="Write the figures as JSON.")] = None,
     page: Annotated[Path | None, typer.Option(help="Write table and plots as one self-contained HTML page.")] = None,
-    start: Annotated[
-        str | None, typer.Option(help="Start pose base,outer,middle,inner in degrees; without it the pose is free.")
-    ] = None,
-    convention: Annotated[
-        str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
-    ] = "nue",
+    start: StartPose = None,
+    convention: ConventionName = "nue",
     rate: Annotated[
         float | None, typer.Option(help="Bring the flight to this rate [Hz] first; without it its samples are solved.")
     ] = None,

@@ -1,12 +1,14 @@
 """`fullpose remedy`: what would make a flight fit a rig."""
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from fullpose.vocabulary import RemedyKind
+from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, command
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import check_outputs
@@ -15,26 +17,27 @@ from fullpose_server.cli._progress import progress_bar
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
-    app.command("remedy", help="Search what would make a flight fit a rig, and plan it so.")(remedy)
+    app.command("remedy", help="Search what would make a flight fit a rig, and plan it so.")(
+        command(RemedyArguments, remedy)
+    )
 
 
-def remedy(
-    flight: Annotated[
-        Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
-    ],
-    rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
-    kind: Annotated[str, typer.Option(help=f"{', '.join(RemedyKind)}.")],
-    out: Annotated[Path, typer.Option(help="Angles of the changed flight; Parquet where it ends in .parquet.")],
-    report: Annotated[Path | None, typer.Option(help="Write the report as JSON, with what was changed.")] = None,
-    frame: Annotated[str | None, typer.Option(help="relax: of this frame alone.")] = None,
-    limit: Annotated[str | None, typer.Option(help="relax: of position, rate or acceleration alone.")] = None,
-    start: Annotated[
-        str | None, typer.Option(help="Start pose base,outer,middle,inner in degrees; without it the pose is free.")
-    ] = None,
-    convention: Annotated[
-        str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
-    ] = "nue",
-) -> None:
+@dataclass(frozen=True)
+class RemedyArguments:
+    """What `fullpose remedy` is told."""
+
+    flight: FlightFile
+    rig: RigName
+    kind: Annotated[str, typer.Option(help=f"{', '.join(RemedyKind)}.")]
+    out: Annotated[Path, typer.Option(help="Angles of the changed flight; Parquet where it ends in .parquet.")]
+    report: Annotated[Path | None, typer.Option(help="Write the report as JSON, with what was changed.")] = None
+    frame: Annotated[str | None, typer.Option(help="relax: of this frame alone.")] = None
+    limit: Annotated[str | None, typer.Option(help="relax: of position, rate or acceleration alone.")] = None
+    start: StartPose = None
+    convention: ConventionName = "nue"
+
+
+def remedy(asked: RemedyArguments) -> None:
     """Say what was changed, write OUT. Exit 2: bad input, OUT untouched. Exit 3: this remedy is not enough."""
     from fullpose.attitude import dcm_from_quaternion
     from fullpose.verify import verify
@@ -45,15 +48,16 @@ def remedy(
     from fullpose_server.planning.remedy import find_remedy
     from fullpose_server.planning.remedy_request import RemedyRequest
 
-    chosen = find_rig(rig).rig
-    asked = RemedyRequest(kind, frame, limit)
-    asked.check(chosen)
-    check_outputs({"--out": out, "--report": report}, flight, rig)
-    read = read_flight(flight, convention, chosen, start)
+    flight, kind = asked.flight, asked.kind
+    chosen = find_rig(asked.rig).rig
+    request = RemedyRequest(kind, asked.frame, asked.limit)
+    request.check(chosen)
+    check_outputs({"--out": asked.out, "--report": asked.report}, flight, asked.rig)
+    read = read_flight(flight, asked.convention, chosen, asked.start)
     attitude = dcm_from_quaternion(read.q)
     with progress_bar(kind) as progress:
         try:
-            found = find_remedy(asked, read.time, attitude, chosen, start=read.start, progress=progress)
+            found = find_remedy(request, read.time, attitude, chosen, start=read.start, progress=progress)
         except NoRemedyError as error:
             fail(f"{flight}: {error}", NOT_FEASIBLE)
     done = found.remedy
@@ -63,9 +67,9 @@ def remedy(
     made["margins"] = margins_report(done.plan.margins, done.rig)
     made["remedy"] = found.described
     with progress_bar("write") as progress:
-        write_solution(out, done.plan.solution, progress)
-    if report is not None:
-        write_text(report, json.dumps(made, indent=2) + "\n")
+        write_solution(asked.out, done.plan.solution, progress)
+    if asked.report is not None:
+        write_text(asked.report, json.dumps(made, indent=2) + "\n")
     if not made["feasible"]:
         fail(
             f"{flight} does not fit {chosen.name} by {kind}; the best found: {found.described['statement']}",

@@ -2,11 +2,13 @@
 
 import json
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, command
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail, say
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import check_outputs
@@ -26,28 +28,27 @@ METHODS = (
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
-    app.command("solve", help="Solve the frame angles of a flight (CSV or Parquet).")(solve)
+    app.command("solve", help="Solve the frame angles of a flight (CSV or Parquet).")(command(SolveArguments, solve))
 
 
-def solve(
-    flight: Annotated[
-        Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
-    ],
-    rig: Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")],
-    out: Annotated[Path, typer.Option(help="Angles, one row an input row; Parquet where it ends in .parquet.")],
-    method: Annotated[str, typer.Option(help=f"{METHODS}.")] = "plan",
-    report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None,
-    start: Annotated[
-        str | None, typer.Option(help="Start pose base,outer,middle,inner in degrees; without it the pose is free.")
-    ] = None,
-    plot: Annotated[Path | None, typer.Option(help="Write the plots as one HTML page.")] = None,
-    convention: Annotated[
-        str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
-    ] = "nue",
+@dataclass(frozen=True)
+class SolveArguments:
+    """What `fullpose solve` is told."""
+
+    flight: FlightFile
+    rig: RigName
+    out: Annotated[Path, typer.Option(help="Angles, one row an input row; Parquet where it ends in .parquet.")]
+    method: Annotated[str, typer.Option(help=f"{METHODS}.")] = "plan"
+    report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None
+    start: StartPose = None
+    plot: Annotated[Path | None, typer.Option(help="Write the plots as one HTML page.")] = None
+    convention: ConventionName = "nue"
     option: Annotated[
         list[str] | None, typer.Option("--option", "-o", metavar="NAME=VALUE", help="Option of the method.")
-    ] = None,
-) -> None:
+    ] = None
+
+
+def solve(asked: SolveArguments) -> None:
     """Solve, write OUT and what else was asked for. Exit 2: bad input, OUT untouched. Exit 3: not feasible."""
     from fullpose.attitude import dcm_from_quaternion
     from fullpose.verify import verify
@@ -55,27 +56,28 @@ def solve(
     from fullpose_server.formats.report import make_report, verdict_report, why_infeasible, why_not_exact
     from fullpose_server.formats.rig_file import find_rig
 
-    chosen = find_rig(rig).rig
-    check_outputs({"--out": out, "--report": report, "--plot": plot}, flight, rig)
-    read = read_flight(flight, convention, chosen, start)
+    flight, method = asked.flight, asked.method
+    chosen = find_rig(asked.rig).rig
+    check_outputs({"--out": asked.out, "--report": asked.report, "--plot": asked.plot}, flight, asked.rig)
+    read = read_flight(flight, asked.convention, chosen, asked.start)
     attitude = dcm_from_quaternion(read.q)
-    solution, planned = _solve(read, attitude, chosen, method, option or [])
+    solution, planned = _solve(read, attitude, chosen, method, asked.option or [])
     made = make_report(solution, verify(solution.time, solution.angles, chosen, attitude))
     made["warnings"] = [{"code": c.code, "message": c.message} for c in read.warnings]
     if planned is not None:
         made.update(verdict_report(planned))
     with progress_bar("write") as progress:
-        write_solution(out, solution, progress)
-    if report is not None:
+        write_solution(asked.out, solution, progress)
+    if asked.report is not None:
         from fullpose.plan.verdict import margins
         from fullpose_server.formats.report import margins_report
 
         made["margins"] = margins_report(margins(solution.time, solution.angles, chosen), chosen)
-        write_text(report, json.dumps(made, indent=2) + "\n")
-    if plot is not None:
+        write_text(asked.report, json.dumps(made, indent=2) + "\n")
+    if asked.plot is not None:
         from fullpose_server.pages.plot_page import plot_page
 
-        write_text(plot, plot_page(solution, made, flight.name))
+        write_text(asked.plot, plot_page(solution, made, flight.name))
     typer.echo(_summary(made))
     why = why_infeasible(made)
     statement = made["verdict"]["statement"] if planned is not None else ""

@@ -15,7 +15,7 @@ from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.session.machine import SilencePolicy
 from tests.fullpose_server.api.live_server import FLIGHT, LiveServer, Operator, live_server
-from tests.fullpose_server.drives.test_udp import emulator
+from tests.fullpose_server.drives.tables import emulator
 from tests.support.waiting import until
 
 # A starved machine is late, and its table lags: what is tested here is not how much.
@@ -60,7 +60,7 @@ def test_a_flight_on_a_table_behind_the_udp_drive(tmp_path: Path) -> None:
     log = tmp_path / "table.log"
     data = tmp_path / "data"
     data.mkdir()
-    with emulator("--log", str(log), "--watchdog", "2.0", "--seconds", "300") as port:
+    with emulator("--log", str(log), "--watchdog", "2.0", "--seconds", "300") as (port, _):
         drive = f"[drive]\nname = 'udp'\nport = {port}\nlink_lost_s = 2.0\n[process]\nmin_free_mb = 1.0\n"
         rig = rig_file(data, PATIENT + drive)
         with live_server(data, rig_rate_hz=500.0) as server:
