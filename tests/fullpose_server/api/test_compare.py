@@ -2,8 +2,11 @@
 
 import json
 import shutil
+import threading
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 from fullpose_server.api.schemas.compare import ComparisonReportOut
 from fullpose_server.planning.comparisons import Comparisons
@@ -170,3 +173,19 @@ def test_found_again_by_the_next_server(server: LiveServer) -> None:
     assert report is not None
     assert report["methods"][0]["exact_share"] == done["report"]["methods"][0]["exact_share"]
     assert again.get("00000000deadbeef").status == "interrupted"
+
+
+def test_a_report_is_checked_in_a_thread(server: LiveServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The server runs in this process: its event loop has a thread of its own."""
+    job = finished(server, ask(server))
+    seen: list[str] = []
+    check = ComparisonReportOut.model_validate
+
+    def watched(report: dict[str, Any]) -> ComparisonReportOut:
+        seen.append(threading.current_thread().name)
+        return check(report)
+
+    monkeypatch.setattr(ComparisonReportOut, "model_validate", watched)
+    assert server.http.get(f"/compare/{job['id']}").json()["report"] == job["report"]
+    assert len(seen) == 1
+    assert seen[0].startswith("asyncio_")

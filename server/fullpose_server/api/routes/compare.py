@@ -3,7 +3,6 @@
 import asyncio
 import time
 from datetime import UTC, datetime
-from typing import Any
 
 from fastapi import APIRouter, Response
 from starlette.responses import FileResponse
@@ -13,7 +12,7 @@ from fullpose.registry import Variant, parse_variant, variant
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.progress import progress_out
-from fullpose_server.api.schemas.compare import CompareIn, ComparisonOut, MethodIn
+from fullpose_server.api.schemas.compare import CompareIn, ComparisonOut, ComparisonReportOut, MethodIn
 from fullpose_server.formats.start_pose import start_pose
 from fullpose_server.planning.compare_length import check_length
 from fullpose_server.planning.compare_request import PAGE, CompareRequest
@@ -53,11 +52,12 @@ async def list_comparisons(services: ServicesDep) -> list[ComparisonOut]:
     return [_out(services, job) for job in services.comparisons.all()]
 
 
-@router.get("/{comparison}")
-async def get_comparison(comparison: str, services: ServicesDep) -> ComparisonOut:
+@router.get("/{comparison}", response_model=ComparisonOut)
+async def get_comparison(comparison: str, services: ServicesDep) -> Response:
     """One comparison, how far it is, and its report once it is done."""
-    job = services.comparisons.get(comparison)
-    return _out(services, job, await asyncio.to_thread(services.comparisons.report, comparison))
+    known = _out(services, services.comparisons.get(comparison))
+    # The report is read, checked and written in a thread: of many methods it is large.
+    return Response(await asyncio.to_thread(_with_report, services, known), media_type="application/json")
 
 
 @router.get(
@@ -85,7 +85,13 @@ def _variant(method: str | MethodIn) -> Variant:
     return variant(method.method, method.options, method.label)
 
 
-def _out(services: Services, job: Comparison, report: dict[str, Any] | None = None) -> ComparisonOut:
+def _with_report(services: Services, known: ComparisonOut) -> bytes:
+    report = services.comparisons.report(known.id) if known.status is JobStatus.DONE else None
+    checked = None if report is None else ComparisonReportOut.model_validate(report)
+    return known.model_copy(update={"report": checked}).model_dump_json(by_alias=True).encode()
+
+
+def _out(services: Services, job: Comparison) -> ComparisonOut:
     return ComparisonOut.model_validate(
         {
             "id": job.id,
@@ -99,6 +105,6 @@ def _out(services: Services, job: Comparison, report: dict[str, Any] | None = No
             "created_at": datetime.fromtimestamp(job.request.created, UTC),
             "error": job.error,
             "page": f"/api/v1/compare/{job.id}/page" if job.status is JobStatus.DONE else None,
-            "report": report,
+            "report": None,
         }
     )
