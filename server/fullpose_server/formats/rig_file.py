@@ -1,6 +1,6 @@
 """Rigs: the built-in ones and TOML files (DESIGN: a rig file). Degrees in the file, radians in `solver`.
 
-Geometry, limits and payload are read here; how the rig is operated in `rig_operating`.
+What a file may say is declared in `rig_document`; how the rig is operated is put together in `rig_operating`.
 """
 
 import math
@@ -10,24 +10,15 @@ from pathlib import Path
 from typing import Any
 
 from fullpose.errors import RigError
-from fullpose.rig import FRAMES, FrameLimits, Geometry, Rig, builtin_rigs
+from fullpose.rig import FRAMES, Rig, builtin_rigs
 from fullpose_server.errors import FileError, NotFoundError
-from fullpose_server.formats.rig_keys import bad, number, only, table_of
-from fullpose_server.formats.rig_operating import TABLES, read_operating
+from fullpose_server.formats.rig_document import FRAME_KEYS, document, frame_limits
+from fullpose_server.formats.rig_keys import bad, only
+from fullpose_server.formats.rig_operating import operating_of
 from fullpose_server.operating import OperatingConfig
 
-# Key in the file -> field of `FrameLimits`; all in degrees but the weight.
-FRAME_KEYS = {
-    "min_deg": "min",
-    "max_deg": "max",
-    "max_rate_deg_s": "max_rate",
-    "max_acceleration_deg_s2": "max_acceleration",
-    "weight": "weight",
-    "home_deg": "home",
-}
 DEFAULT_SIZE_M = (0.3, 0.2, 0.2)
 _DEFAULTS = OperatingConfig()
-_NO_LIMIT = "a finite number; leave the key out for no limit"
 
 
 @dataclass(frozen=True)
@@ -65,21 +56,17 @@ def read_rig(path: Path, defaults: OperatingConfig = _DEFAULTS) -> RigEntry:
 
 def parse_rig(table: dict[str, Any], file: str, defaults: OperatingConfig = _DEFAULTS) -> RigEntry:
     """The rig of a parsed file; `file` is for messages."""
-    only(table, {"name", "geometry", "frames", "payload", *TABLES}, "", file)
-    name, geometry = table.get("name"), table.get("geometry")
-    if not isinstance(name, str) or not name:
-        raise bad(file, "name", name, "a name")
-    if geometry not in [kind.value for kind in Geometry]:
-        raise bad(file, "geometry", geometry, "one of " + ", ".join(Geometry))
-    frames = table_of(table.get("frames", {}), "frames", file, "tables such as [frames.outer]")
-    real = [FRAMES[index] for index in Geometry(geometry).frames]
-    only(frames, set(real), "frames.", file)
+    read = document(table, file)
+    frames = table.get("frames", {})
+    only(frames, {FRAMES[index] for index in read.geometry.frames}, "frames.", file)
+    base, outer, middle, inner = (frame_limits(getattr(read.frames, name)) for name in FRAMES)
     try:
-        rig = Rig(name, Geometry(geometry), _limits(frames, file))
+        rig = Rig(read.name, read.geometry, (base, outer, middle, inner))
     except RigError as error:
         raise _in_degrees(error, frames, file) from None
-    payload = _payload(table.get("payload", {}), file)
-    return RigEntry(rig, payload, builtin=False, operating=read_operating(table, file, defaults))
+    size, mesh = read.payload.size_m, read.payload.mesh
+    payload = Payload(DEFAULT_SIZE_M if size is None and not mesh else size, mesh)
+    return RigEntry(rig, payload, builtin=False, operating=operating_of(read, file, defaults))
 
 
 def find_rig(name_or_file: str, folder: Path | None = None) -> RigEntry:
@@ -145,22 +132,6 @@ class RigStore:
         return entry
 
 
-def _limits(frames: dict[str, Any], file: str) -> tuple[FrameLimits, FrameLimits, FrameLimits, FrameLimits]:
-    base, outer, middle, inner = (_frame(frames.get(name, {}), f"frames.{name}", file) for name in FRAMES)
-    return base, outer, middle, inner
-
-
-def _frame(given: Any, where: str, file: str) -> FrameLimits:
-    table = table_of(given, where, file)
-    only(table, set(FRAME_KEYS), f"{where}.", file)
-    values = {}
-    for key, field in FRAME_KEYS.items():
-        if key in table:
-            value = number(table[key], f"{where}.{key}", file, _NO_LIMIT)
-            values[field] = value if key == "weight" else math.radians(value)
-    return FrameLimits(**values)
-
-
 def _in_degrees(error: RigError, frames: dict[str, Any], file: str) -> FileError:
     """What is wrong with a frame, in the keys and degrees of the file."""
     _, frame, *field = error.field.split(".")
@@ -175,19 +146,3 @@ def _in_degrees(error: RigError, frames: dict[str, Any], file: str) -> FileError
     given, other = ("min_deg", "max_deg") if "min_deg" in table else ("max_deg", "min_deg")
     hint = "a single stop: give the other one as far as the frame may ever turn, in degrees"
     return bad(file, f"{where}.{given}", table[given], f"{other} beside it ({hint})")
-
-
-def _payload(given: Any, file: str) -> Payload:
-    table = table_of(given, "payload", file)
-    only(table, {"size_m", "mesh"}, "payload.", file)
-    mesh, size = table.get("mesh"), table.get("size_m")
-    if mesh is not None and not isinstance(mesh, str):
-        raise bad(file, "payload.mesh", mesh, "a file name")
-    if size is None:
-        return Payload(None if mesh else DEFAULT_SIZE_M, mesh)
-    if not isinstance(size, list) or len(size) != 3:
-        raise bad(file, "payload.size_m", size, "three lengths [m]")
-    x, y, z = (number(value, "payload.size_m", file) for value in size)
-    if not min(x, y, z) > 0.0:
-        raise bad(file, "payload.size_m", size, "lengths above zero [m]")
-    return Payload((x, y, z), mesh)

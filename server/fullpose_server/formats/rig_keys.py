@@ -19,27 +19,6 @@ def only(table: dict[str, Any], known: Iterable[str], prefix: str, file: str) ->
             raise bad(file, prefix + key, key, "one of " + ", ".join(sorted(known)))
 
 
-def table_of(value: Any, where: str, file: str, expected: str = "a table") -> dict[str, Any]:
-    """`value`, which must be a table. Raises `FileError`."""
-    if not isinstance(value, dict):
-        raise bad(file, where, value, expected)
-    return value
-
-
-def number(value: Any, where: str, file: str, expected: str = "a finite number") -> float:
-    """`value`, which must be a finite number. Raises `FileError`."""
-    if not is_number(value):
-        raise bad(file, where, value, expected)
-    return float(value)
-
-
-def whole(value: Any, where: str, file: str, expected: str = "a whole number") -> int:
-    """`value`, which must be a whole number. Raises `FileError`."""
-    if not isinstance(value, int) or not is_number(value):
-        raise bad(file, where, value, expected)
-    return value
-
-
 def is_number(value: Any) -> bool:
     """Whether `value` is a finite float, or an integer of at most 64 bits (TOML's; JSON carries no longer ones)."""
     if isinstance(value, int):

@@ -1,15 +1,14 @@
 """Rigs."""
 
 import asyncio
-import math
 
 from fastapi import APIRouter
 
-from fullpose.rig import FRAMES, FrameLimits
+from fullpose.rig import FRAMES
 from fullpose_server.api.deps import Services, ServicesDep
-from fullpose_server.api.schemas.rigs import FrameOut, FramesOut, PayloadOut, RigOut
-from fullpose_server.formats.degrees import written_degrees
+from fullpose_server.api.schemas.rigs import FramesOut, PayloadOut, RigOut
 from fullpose_server.formats.plan_folder import rig_hash
+from fullpose_server.formats.rig_document import frame_values
 from fullpose_server.formats.rig_file import RigEntry
 
 router = APIRouter(prefix="/rigs", tags=["rigs"])
@@ -30,7 +29,7 @@ async def get_rig(rig: str, services: ServicesDep) -> RigOut:
 def _rig(services: Services, entry: RigEntry) -> RigOut:
     rig = entry.rig
     frames = {
-        FRAMES[index]: _frame(limits) if index in rig.geometry.frames else None
+        FRAMES[index]: frame_values(limits) if index in rig.geometry.frames else None
         for index, limits in enumerate(rig.frames)
     }
     return RigOut.model_validate(
@@ -44,18 +43,4 @@ def _rig(services: Services, entry: RigEntry) -> RigOut:
             "payload": PayloadOut(size_m=entry.payload.size_m, mesh=entry.payload.mesh),
             "state": services.hosts.state(rig.name),
         }
-    )
-
-
-def _frame(limits: FrameLimits) -> FrameOut:
-    def deg(value: float) -> float | None:
-        return written_degrees(value) if math.isfinite(value) else None
-
-    return FrameOut(
-        min_deg=deg(limits.min),
-        max_deg=deg(limits.max),
-        max_rate_deg_s=deg(limits.max_rate),
-        max_acceleration_deg_s2=deg(limits.max_acceleration),
-        weight=limits.weight,
-        home_deg=written_degrees(limits.home),
     )

@@ -1,28 +1,32 @@
 """Rigs on the wire."""
 
-from pydantic import Field
+from typing import Any
+
+from pydantic import Field, create_model
 
 from fullpose_server.api.schemas.base import GeometryName, Name, Wire
+from fullpose_server.formats.rig_document import FrameTable
 
 
-class FrameOut(Wire):
-    """One frame's limits; null means no limit. Both positions null: the frame turns without end."""
-
-    min_deg: float | None
-    max_deg: float | None
-    max_rate_deg_s: float | None
-    max_acceleration_deg_s2: float | None
-    weight: float
-    home_deg: float
+# The keys of a rig file's frame; all are told, and what the file may leave out for no limit is null.
+_FRAME: dict[str, Any] = {
+    key: (float | None if field.default is None else float, ...) for key, field in FrameTable.model_fields.items()
+}
+FrameOut = create_model(
+    "FrameOut",
+    __base__=Wire,
+    __doc__="One frame's limits; null means no limit. Both positions null: the frame turns without end.",
+    **_FRAME,
+)
 
 
 class FramesOut(Wire):
     """The frames from the outside in; a three-axis rig has no base."""
 
-    base: FrameOut | None
-    outer: FrameOut
-    middle: FrameOut
-    inner: FrameOut
+    base: FrameOut | None  # type: ignore[valid-type]
+    outer: FrameOut  # type: ignore[valid-type]
+    middle: FrameOut  # type: ignore[valid-type]
+    inner: FrameOut  # type: ignore[valid-type]
 
 
 class PayloadOut(Wire):
