@@ -5,13 +5,13 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from fullpose._typing import Array
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.drives import servo
 from fullpose_server.drives.base import Drive, DriveError, Status
+from fullpose_server.drives.options import options_of
 
 # A real motor has limits where the rig's description gives none.
 _MOST_RATE = math.radians(2000.0)
@@ -206,10 +206,4 @@ class SimulatedDrive:
 
 def make(rig: Rig, rate_hz: float, options: dict[str, Any]) -> Drive:
     """The simulated drive (see `DriveFactory`); `options` are `SimulatedOptions`."""
-    unknown = set(options) - set(SimulatedOptions.__dataclass_fields__)
-    if unknown:
-        raise DriveError(f"simulated drive: no option {', '.join(sorted(unknown))}")
-    try:
-        return SimulatedDrive(rig, rate_hz, msgspec.convert(options, SimulatedOptions))
-    except msgspec.ValidationError as cause:
-        raise DriveError(f"simulated drive: {cause}") from cause
+    return SimulatedDrive(rig, rate_hz, options_of("simulated", SimulatedOptions, options))

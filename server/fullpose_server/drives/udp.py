@@ -10,12 +10,12 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from fullpose._typing import Array
 from fullpose.rig import Rig
 from fullpose_server.drives.base import Drive, DriveError, Status
+from fullpose_server.drives.options import options_of
 from fullpose_server.drives.packet import (
     STATE_SIZE,
     CommandPacket,
@@ -189,10 +189,4 @@ class UdpDrive:
 
 def make(rig: Rig, rate_hz: float, options: dict[str, Any]) -> Drive:
     """The udp drive (see `DriveFactory`); `options` are `UdpOptions`."""
-    unknown = set(options) - set(UdpOptions.__dataclass_fields__)
-    if unknown:
-        raise DriveError(f"udp drive: no option {', '.join(sorted(unknown))}")
-    try:
-        return UdpDrive(rig, rate_hz, msgspec.convert(options, UdpOptions))
-    except msgspec.ValidationError as cause:
-        raise DriveError(f"udp drive: {cause}") from cause
+    return UdpDrive(rig, rate_hz, options_of("udp", UdpOptions, options))

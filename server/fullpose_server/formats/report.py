@@ -135,10 +135,13 @@ def why_infeasible(report: dict[str, Any]) -> str | None:
             f"{first['frame']} frame"
         )
     first = violations[0]
-    return (
-        f"at {first['time_s']:.3f} s the {first['frame']} frame exceeds its {first['limit']} limit "
-        f"({first['value']:.4g} {UNITS[first['limit']]}); {report['limit_violation_samples']} such samples"
-    )
+    told = exceeds(first["time_s"], first["frame"], first["limit"], first["value"])
+    return f"{told}; {report['limit_violation_samples']} such samples"
+
+
+def exceeds(time_s: float, frame: str, limit: str, value: float) -> str:
+    """That a frame is beyond a limit, and by which value [deg and seconds]."""
+    return f"at {time_s:.3f} s the {frame} frame exceeds its {limit} limit ({value:.4g} {UNITS[limit]})"
 
 
 def why_not_exact(report: dict[str, Any]) -> str | None:

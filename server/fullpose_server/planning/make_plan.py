@@ -19,9 +19,9 @@ from fullpose.resample import Resampled, continuous, resample
 from fullpose.rig import Rig
 from fullpose.solution import Solution
 from fullpose.solve import solve_flight
-from fullpose.verify import Violation, verify
+from fullpose.verify import verify
 from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan, rig_hash, write_plan
-from fullpose_server.formats.report import make_report, margins_report, verdict_report, why_infeasible
+from fullpose_server.formats.report import exceeds, make_report, margins_report, verdict_report, why_infeasible
 from fullpose_server.planning.plan_request import PlanRequest
 from fullpose_server.planning.remedy import find_remedy
 from fullpose_server.planning.remedy_request import RemedyRequest
@@ -220,9 +220,7 @@ def _whole(angles: Array, rate_hz: float, rig: Rig, lead: int) -> str | None:
     """Why the path, leads included, is not inside the limits; None where it is."""
     at = (np.arange(len(angles)) - lead) / rate_hz
     violations = verify(at, angles, rig, None).violations
-    return None if not violations else f"with its leads: {_sentence(violations[0])}"
-
-
-def _sentence(violation: Violation) -> str:
-    value = math.degrees(violation.value)
-    return f"at {violation.time:.3f} s the {violation.frame} frame exceeds its {violation.limit} limit ({value:.4g})"
+    if not violations:
+        return None
+    first = violations[0]
+    return f"with its leads: {exceeds(first.time, first.frame, first.limit, math.degrees(first.value))}"

@@ -22,12 +22,16 @@ class IllegalCommandError(SessionError):
         self.allowed = allowed
 
 
-class LeaseError(SessionError):
-    """The lease is not the caller's, or the token is old."""
+class CodedError(SessionError):
+    """A refusal of many kinds: each has its code."""
 
     def __init__(self, code: str, message: str) -> None:
         super().__init__(message)
         self.code = code
+
+
+class LeaseError(CodedError):
+    """The lease is not the caller's, or the token is old."""
 
 
 class BindingError(SessionError):
@@ -42,9 +46,5 @@ class BindingError(SessionError):
         self.given = given
 
 
-class NotReadyError(SessionError):
+class NotReadyError(CodedError):
     """Something must happen first: which, is in the message."""
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(message)
-        self.code = code

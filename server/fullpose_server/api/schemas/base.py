@@ -32,6 +32,12 @@ class Wire(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
+def check_one(message: Wire, first: str, second: str, expected: str) -> None:
+    """Raise ValueError unless exactly one of two fields is given."""
+    if (getattr(message, first) is None) == (getattr(message, second) is None):
+        raise ValueError(f"expected {expected}")
+
+
 class FieldProblem(Wire):
     """One thing wrong with a request: where, which value, what was expected."""
 

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fullpose_server.api.schemas.base import Four, Problem, Wire
+from fullpose_server.api.schemas.base import Four, Problem, Wire, check_one
 from fullpose_server.api.schemas.session import LeaseToken, LiveLoad
 from fullpose_server.session.states import State
 
@@ -38,8 +38,7 @@ class LiveSampleIn(Wire):
 
     @model_validator(mode="after")
     def _one_attitude(self) -> Self:
-        if (self.q is None) == (self.euler_deg is None):
-            raise ValueError("expected one attitude: q or euler_deg")
+        check_one(self, "q", "euler_deg", "one attitude: q or euler_deg")
         return self
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
 from pydantic import Field, create_model, model_validator
 
-from fullpose_server.api.schemas.base import Four, FrameName, Wire
+from fullpose_server.api.schemas.base import Four, FrameName, Wire, check_one
 from fullpose_server.session.alarms import Severity
 from fullpose_server.session.states import Command, State
 
@@ -45,8 +45,7 @@ class LoadArgs(Wire):
 
     @model_validator(mode="after")
     def _one(self) -> Self:
-        if (self.plan is None) == (self.live is None):
-            raise ValueError("expected one of plan and live")
+        check_one(self, "plan", "live", "one of plan and live")
         return self
 
 

@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fullpose_server.api.schemas.base import Four, FrameName, LimitName, Name, Problem, Wire
+from fullpose_server.api.schemas.base import Four, FrameName, LimitName, Name, Problem, Wire, check_one
 from fullpose_server.api.schemas.plans import OptionValue, ReportOut
 
 
@@ -17,8 +17,7 @@ class Attitudes(Wire):
 
     @model_validator(mode="after")
     def _one_attitude(self) -> Self:
-        if (self.q is None) == (self.euler_deg is None):
-            raise ValueError("expected one attitude: q or euler_deg")
+        check_one(self, "q", "euler_deg", "one attitude: q or euler_deg")
         rows = len(self.q if self.q is not None else self.euler_deg or [])
         if rows != len(self.time_s):
             raise ValueError(f"{rows} attitudes for {len(self.time_s)} values of time_s")

@@ -17,16 +17,12 @@ from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.path_player import PathPlayer
 from fullpose_server.runtime.motion.point_to_point import MoveError, PointMove
 from fullpose_server.session.binding import Binding
-from fullpose_server.session.errors import SessionError
+from fullpose_server.session.errors import CodedError
 from fullpose_server.session.states import Command
 
 
-class OrderError(SessionError):
+class OrderError(CodedError):
     """A command whose arguments cannot be done. `code` and message say which and why."""
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(message)
-        self.code = code
 
 
 @dataclass(frozen=True)
