@@ -45,7 +45,7 @@ def _number(expected: str = "a finite number") -> Any:
     return Annotated[float, _checked(is_number, expected)]
 
 
-def _whole(expected: str = "a whole number") -> Any:
+def _integer(expected: str = "a whole number") -> Any:
     return Annotated[int, _checked(lambda value: isinstance(value, int) and is_number(value), expected)]
 
 
@@ -149,7 +149,7 @@ class ProcessTable(Table):
     """The rig's process."""
 
     realtime_priority: Priority | None = None
-    cpu: _whole() | None = None  # type: ignore[valid-type]
+    cpu: _integer() | None = None  # type: ignore[valid-type]
     min_free_mb: Number | None = None
 
 

@@ -28,7 +28,7 @@ def operating_of(read: RigDocument, file: str, defaults: OperatingConfig) -> Ope
     said = _given(read)
     changes: dict[str, Any] = {} if read.drive is None else _drive(read.drive)
     for part in said.keys() & {"guard", "motion"}:
-        changes[part] = _over(getattr(defaults, part), said[part], part, file)
+        changes[part] = _changed(getattr(defaults, part), said[part], part, file)
     for name, policy in _given(read.silence).items():
         changes[name] = _silence(_given(policy), f"silence.{name}", file, getattr(defaults, name))
     changes |= {key: None if value is False else value for key, value in _given(read.process).items()}
@@ -56,7 +56,7 @@ def _named(file: str, key_of: Any) -> Iterator[None]:
         raise bad(file, key_of(error.field), error.value, error.expected) from None
 
 
-def _over(base: Any, table: BaseModel, where: str, file: str) -> Any:
+def _changed(base: Any, table: BaseModel, where: str, file: str) -> Any:
     """The dataclass `base` with what a table of numbers and tolerances says."""
     changes: dict[str, Any] = {}
     for key, value in _given(table).items():

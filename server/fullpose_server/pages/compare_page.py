@@ -106,12 +106,12 @@ def beyond_limits(solution: Solution) -> NDArray[np.bool_]:
     """Which samples are beyond any limit, with the tolerances of `fullpose.verify`. (n,)"""
     rig, angles = solution.rig, solution.angles
     outside = np.maximum(rig.position_min - angles, angles - rig.position_max)
-    over: NDArray[np.bool_] = np.any(outside > POSITION_TOLERANCE, axis=1)
+    beyond: NDArray[np.bool_] = np.any(outside > POSITION_TOLERANCE, axis=1)
     if len(angles) > 1:
         rates, accelerations = differences(solution.time, angles)
-        over[1:] |= (np.abs(rates) > rig.max_rate * (1.0 + TOLERANCE)).any(axis=1)
-        over[1:-1] |= (np.abs(accelerations) > rig.max_acceleration * (1.0 + TOLERANCE)).any(axis=1)
-    return over
+        beyond[1:] |= (np.abs(rates) > rig.max_rate * (1.0 + TOLERANCE)).any(axis=1)
+        beyond[1:-1] |= (np.abs(accelerations) > rig.max_acceleration * (1.0 + TOLERANCE)).any(axis=1)
+    return beyond
 
 
 def _spans(time: Array, where: NDArray[np.bool_]) -> list[list[float]]:

@@ -51,19 +51,19 @@ def make_comparison(
     `MethodError` where no method applies to the rig.
     """
     asked = variants(methods)
-    note = None
+    resampling = None
     if rate_hz is None:
         check_samples(at.size, len(asked))
     else:
         check_length(float(at[-1] - at[0]), rate_hz, len(asked))
         flight = resample(at, q, rate_hz)
-        at, q, note = flight.time, flight.q, flight.note
+        at, q, resampling = flight.time, flight.q, flight.note
     attitude = dcm_from_quaternion(q)
     rows = compare(at, attitude, rig, asked, start=start, clock=time.perf_counter, progress=progress)
     if all(row.refusal is not None for row in rows):
         reasons = "; ".join(f"{row.variant.label}: {row.refusal}" for row in rows)
         raise MethodError(f"no method that is asked for applies to {rig.name}: {reasons}")
-    report = comparison_report(rows, rig, name, at, note)
+    report = comparison_report(rows, rig, name, at, resampling)
     return Comparison(report, compare_page(report, rows, rig, attitude))
 
 

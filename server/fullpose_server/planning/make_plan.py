@@ -43,7 +43,7 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     time_s, q = read_arrays(request.trajectory)
     flight = resample(np.array(time_s), np.array(q), request.rate_hz)
     if flight.time.size < 2:
-        flight = _stand(flight, request.rate_hz)
+        flight = _held(flight, request.rate_hz)
     made = _solve(request, flight.time - flight.time[0], flight.q, progress)
     solution = made.solution
     at, rig = solution.time, solution.rig
@@ -62,7 +62,7 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
             refusal = f"the flight itself fits, its way in or out from rest does not: {error}"
     angles = np.concatenate([before, solution.angles, after])
     if refusal is None:
-        refusal = _whole(angles, request.rate_hz, rig, len(before))
+        refusal = _path_refusal(angles, request.rate_hz, rig, len(before))
     remedy = made.remedy | {"sufficient": refusal is None} if made.remedy else None  # leads count, too
     if refusal is None and rig_hash(rig) != rig_hash(request.rig):
         refusal = f"it needs {made.remedy['statement']}: give the rig that, and plan again"
@@ -72,7 +72,7 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     return result | {"verdict": made.verdict, "margins": shown, "remedy": remedy}
 
 
-def _stand(moment: Resampled, rate_hz: float) -> Resampled:
+def _held(moment: Resampled, rate_hz: float) -> Resampled:
     """A flight of one sample, held for one period: what is flown is a way from one sample to the next."""
     return replace(
         moment,
@@ -138,18 +138,18 @@ def _remedied(
         options=options,
         progress=tell,
     )
-    whole = found.remedy.plan
+    plan = found.remedy.plan
     q = continuous(quaternion_from_dcm(found.remedy.attitude))
     # A rig with a limit raised is still that rig by name: the plan's page compares the two.
-    solution = replace(whole.solution, rig=replace(whole.solution.rig, name=request.rig.name))
-    return _Made(solution, q, whole.verdict.statement, lambda: _planned(whole), whole, found.described)
+    solution = replace(plan.solution, rig=replace(plan.solution.rig, name=request.rig.name))
+    return _Made(solution, q, plan.verdict.statement, lambda: _planned(plan), plan, found.described)
 
 
-def _planned(whole: Plan) -> tuple[Array, Array]:
+def _planned(plan: Plan) -> tuple[Array, Array]:
     """The planner's own leads. Raises `MethodError` where there are none."""
-    if whole.lead_note:
-        raise MethodError(whole.lead_note)
-    return whole.lead_in, whole.lead_out
+    if plan.lead_note:
+        raise MethodError(plan.lead_note)
+    return plan.lead_in, plan.lead_out
 
 
 def _write(
@@ -216,7 +216,7 @@ def end_motion(angles: Array, dt: float) -> tuple[Array, Array, Array]:
     return np.array(x[0]), rate, acceleration
 
 
-def _whole(angles: Array, rate_hz: float, rig: Rig, lead: int) -> str | None:
+def _path_refusal(angles: Array, rate_hz: float, rig: Rig, lead: int) -> str | None:
     """Why the path, leads included, is not inside the limits; None where it is."""
     at = (np.arange(len(angles)) - lead) / rate_hz
     violations = verify(at, angles, rig, None).violations

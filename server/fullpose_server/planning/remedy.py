@@ -66,8 +66,8 @@ def _described(kind: RemedyKind, remedy: Remedy, rig: Rig) -> dict[str, Any]:
     if remedy.what == NOTHING:
         return {"what": NOTHING, "value": 0.0, "unit": "deg", "statement": "flown as it is: no limit need be raised"}
     if kind != RemedyKind.RELAX:
-        whole = "the whole flight" if kind == RemedyKind.HEADING_OFFSET else "the payload in its mount"
-        said = f"{whole} turned by {angle:.4g} deg of {remedy.what}" if value else f"{whole} as it is"
+        turned = "the whole flight" if kind == RemedyKind.HEADING_OFFSET else "the payload in its mount"
+        said = f"{turned} turned by {angle:.4g} deg of {remedy.what}" if value else f"{turned} as it is"
         return {"what": remedy.what, "value": angle, "unit": "deg", "statement": said}
     frame, limit = remedy.what.split()
     index = FRAMES.index(frame)

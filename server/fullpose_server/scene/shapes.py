@@ -107,6 +107,6 @@ def arrow(direction: ArrayLike, start: float, length: float, radius: float) -> t
 
 def joined(*meshes: trimesh.Trimesh) -> trimesh.Trimesh:
     """One mesh of many, shaded smooth on curves and sharp on edges."""
-    whole = cast(trimesh.Trimesh, trimesh.util.concatenate(list(meshes)))
-    whole.merge_vertices()
-    return cast(trimesh.Trimesh, trimesh.graph.smooth_shade(whole, angle=math.radians(35.0)))
+    joined = cast(trimesh.Trimesh, trimesh.util.concatenate(list(meshes)))
+    joined.merge_vertices()
+    return cast(trimesh.Trimesh, trimesh.graph.smooth_shade(joined, angle=math.radians(35.0)))

@@ -99,9 +99,9 @@ def _diagnose(path: Path, file: str, header: _Header, wanted: tuple[str, ...], r
         if len(cells) != len(header.names):
             expected = f"{len(header.names)} columns as in the header"
             return FileError(file, expected, line=line, value=f"{len(cells)} columns")
-        for name, place in places:
-            if not _is_number(cells[place]):
-                return FileError(file, "a number", line=line, column=name, value=repr(cells[place][:40]))
+        for name, column in places:
+            if not _is_number(cells[column]):
+                return FileError(file, "a number", line=line, column=name, value=repr(cells[column][:40]))
     # Arrow is stricter than Python somewhere: its own words, which carry the row, say where.
     return FileError(file, f"CSV as RFC 4180 has it ({reason.splitlines()[0][:200]})")
 

@@ -183,14 +183,14 @@ class Shared:
         """Percentiles of the loop's lateness so far [us], from the histogram; zeros before the first tick."""
         counts = self.histogram.astype(np.int64)
         total = int(counts.sum())
-        worst = int(self.header["max_lateness_ns"][0]) / 1000.0
+        largest = int(self.header["max_lateness_ns"][0]) / 1000.0
         if total == 0:
             return {"p50": 0.0, "p99": 0.0, "p999": 0.0, "max": 0.0}
         running = np.cumsum(counts)
         shares = {"p50": 0.5, "p99": 0.99, "p999": 0.999}
         # A bucket's upper edge, so that no figure is flattered.
         found = {name: float(np.searchsorted(running, share * total) + 1) for name, share in shares.items()}
-        return {name: min(value, worst) for name, value in found.items()} | {"max": worst}
+        return {name: min(value, largest) for name, value in found.items()} | {"max": largest}
 
 
 def shared_directory() -> Path | None:

@@ -15,7 +15,7 @@ class MethodStep:
     """A step method of the solver."""
 
     preview_s = 0.0
-    way_age_s = float("nan")
+    plan_age_s = float("nan")
 
     def __init__(self, rig: Rig, settings: LiveSettings, dt: float) -> None:
         self._method = find_step(settings.method)

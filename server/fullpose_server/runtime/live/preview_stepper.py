@@ -1,7 +1,7 @@
 """A live flight with `preview`: the exact step in the loop, its way ahead planned in a process of its own.
 
 The loop never waits for the planner. One job is with it at a time; a way that comes late, or never, costs room on the
-self-motion and nothing else, and `way_age_s` says so. mathematics, section 9.
+self-motion and nothing else, and `plan_age_s` says so. mathematics, section 9.
 """
 
 import math
@@ -80,8 +80,8 @@ class PreviewStep:
     def follow(self, q: Array) -> tuple[Array, int]:
         """The next angles (4,) [rad] toward attitude q (4,), and the code of the limit that keeps them from it."""
         flight, planner = self._flight, self._planner
-        way = planner.answer()
-        if way is not None and flight.stepper.adopt(way):
+        ahead = planner.answer()
+        if ahead is not None and flight.stepper.adopt(ahead):
             self._heard = flight.now
         found = flight.step(q)
         if flight.stepper.due and not planner.busy:
@@ -99,7 +99,7 @@ class PreviewStep:
         self._flight.stepper.void()
 
     @property
-    def way_age_s(self) -> float:
+    def plan_age_s(self) -> float:
         """How long ago the planner was last heard [s]."""
         return self._flight.now - self._heard
 
@@ -158,8 +158,8 @@ class Planner:
         if not data:
             return None  # it ended: still busy, for ever
         self.busy = False
-        way: Ahead = pickle.loads(data)
-        return None if self._abandoned else way
+        ahead: Ahead = pickle.loads(data)
+        return None if self._abandoned else ahead
 
     def abandon(self) -> None:
         """The job that is with it, if any, belongs to a flight that is over."""

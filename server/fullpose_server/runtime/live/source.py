@@ -31,7 +31,7 @@ from fullpose_server.runtime.live.steppers import LiveStep
 from fullpose_server.runtime.motion.path_player import attitude_error
 
 _PER_TICK = 16
-_RATE_OVER_S = 1.0
+_RATE_SPAN_S = 1.0
 _SOURCE_SILENT_S = 0.5  # then another may be followed in its place
 _DEG = 180.0 / math.pi
 
@@ -156,7 +156,7 @@ class LiveSource:
     def poll(self, now: float) -> None:
         """Take the samples that have come."""
         self._now = now
-        if now - self._rated[0] > _RATE_OVER_S:
+        if now - self._rated[0] > _RATE_SPAN_S:
             self.rate_hz = max(0, self._buffer.accepted - self._rated[1]) / (now - self._rated[0])
             self._rated = (now, self._buffer.accepted)
         for each in self._links:
@@ -240,9 +240,9 @@ class LiveSource:
         return not self._waited
 
     @property
-    def way_age_s(self) -> float:
+    def plan_age_s(self) -> float:
         """How old the planner's last word is [s]; nan where none plans."""
-        return math.nan if self._step is None else self._step.way_age_s
+        return math.nan if self._step is None else self._step.plan_age_s
 
     def view(self) -> LiveView:
         """What a monitor needs to know of this tick."""
@@ -252,7 +252,7 @@ class LiveSource:
             self.limited,
             self.heard,
             self.last_age_ms,
-            self.way_age_s,
+            self.plan_age_s,
             self.bad,
             b.dropped,
             b.steps,
@@ -265,11 +265,11 @@ class LiveSource:
             return None
         counts = self.counts
         heard = self._following and not self._waited
-        way = self.way_age_s * 1e3
+        age_ms = self.plan_age_s * 1e3
         return LiveHealth(
             rate_hz=self.rate_hz,
             age_ms=self.last_age_ms if heard else None,
-            way_age_ms=None if math.isnan(way) or not heard else way,
+            way_age_ms=None if math.isnan(age_ms) or not heard else age_ms,
             **counts,
         )
 

@@ -42,7 +42,7 @@ class LiveStep(Protocol):
         ...
 
     @property
-    def way_age_s(self) -> float:
+    def plan_age_s(self) -> float:
         """How old the planner's last word is [s]; nan for a method that has no planner."""
         ...
 

@@ -136,18 +136,18 @@ class Guard:
     def measured(self, measured: Array, due: Array, target: Array) -> tuple[float, list[Finding]]:
         """Compare what the drive measured with what was due: (attitude error [rad] or nan, all that was found)."""
         error = observe(self._axes, measured, due, target, self.following)
-        worst, frame = 0.0, 0
+        largest, frame = 0.0, 0
         for i in range(4):
             size = abs(self.following[i])
-            if not size <= worst:
-                worst, frame = float(size), i
-                if math.isnan(worst):  # nothing is worse than no measurement, whatever the tolerance
+            if not size <= largest:
+                largest, frame = float(size), i
+                if math.isnan(largest):  # nothing is worse than no measurement, whatever the tolerance
                     text = f"{FRAMES[i]} frame: its position is not a number"
-                    return error, [Finding("following_error", True, text, FRAMES[i], worst, math.nan, "deg")]
+                    return error, [Finding("following_error", True, text, FRAMES[i], largest, math.nan, "deg")]
         found = []
-        if not (worst <= self._warn and worst <= self._trip):
+        if not (largest <= self._warn and largest <= self._trip):
             tolerance = self._config.following_deg
-            found.append(self.scalar("following_error", math.degrees(worst), tolerance, "deg", FRAMES[frame]))
+            found.append(self.scalar("following_error", math.degrees(largest), tolerance, "deg", FRAMES[frame]))
         if not math.isnan(error):
             found.append(self.scalar("attitude_error", math.degrees(error), self._config.attitude_deg))
         return error, [each for each in found if each is not None]
