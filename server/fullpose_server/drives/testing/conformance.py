@@ -51,6 +51,14 @@ class DriveConformance:
             drive.write(at, np.zeros(4), np.zeros(4), 1, sequence)
         return now, sequence, status
 
+    def _enabled(self) -> tuple[Drive, float, Array, int]:
+        """A drive, enabled and held for a while where it stood (4,) [rad]; the status then."""
+        drive, now, position, _ = self._ready()
+        at = position.copy()
+        drive.enable()
+        now, _, status = self._hold(drive, now, at, 50, 0)
+        return drive, now, at, status
+
     def _until_taken(self, drive: Drive, now: float, ticks: int = 2000) -> tuple[float, int]:
         """Ticks without writes until the table has taken the last order; the status then."""
         position, rate = np.zeros(4), np.zeros(4)
@@ -84,10 +92,7 @@ class DriveConformance:
 
     def test_enabling_does_not_move_it(self) -> None:
         """The table stays where it stands until it is told otherwise."""
-        drive, now, position, _ = self._ready()
-        before = position.copy()
-        drive.enable()
-        _, _, status = self._hold(drive, now, before, 50, 0)
+        drive, now, before, status = self._enabled()
         after, rate = np.zeros(4), np.zeros(4)
         drive.read(self.tick(now), after, rate)
         assert status & Status.ENABLED
@@ -204,10 +209,8 @@ class DriveConformance:
 
     def test_enabling_again_forgets_the_watchdog(self) -> None:
         """What is read after `enable` is never the watchdog of before."""
-        drive, now, position, rate = self._ready()
-        start = position.copy()
-        drive.enable()
-        now, _, _ = self._hold(drive, now, start, 50, 0)
+        drive, now, start, _ = self._enabled()
+        position, rate = np.zeros(4), np.zeros(4)
         status = 0
         for _ in range(round(1.0 * self.rate_hz)):
             now = self.tick(now)
