@@ -7,7 +7,6 @@ from pydantic import Field, create_model
 from fullpose_server.api.schemas.base import GeometryName, Name, Wire
 from fullpose_server.formats.rig_document import FrameTable
 
-
 # The keys of a rig file's frame; all are told, and what the file may leave out for no limit is null.
 _FRAME: dict[str, Any] = {
     key: (float | None if field.default is None else float, ...) for key, field in FrameTable.model_fields.items()
