@@ -14,7 +14,7 @@ from fullpose.attitude import dcm_from_quaternion
 from fullpose.plan import PlanOptions, plan
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
-from fullpose.trajectory.sqp import path_cost
+from fullpose.trajectory.cost import cost_of, path_cost
 from fullpose.verify import verify
 
 REFERENCE = PlanOptions(grid=np.radians(0.25), stage=0.025, knot=0.0125, iterations=30, window=1e3)
@@ -37,7 +37,7 @@ def main(count: int) -> None:
                 seconds.append(clock.perf_counter() - begin)
                 peaks = verify(t, made.solution.angles, rig).peaks
                 shares.append(((peaks[:, 1] / rig.max_rate).max(), (peaks[:, 2] / rig.max_acceleration).max()))
-                costs.append(path_cost(t, made.solution.angles, rig, PlanOptions(), 1))
+                costs.append(path_cost(t, made.solution.angles, cost_of(rig, PlanOptions()), 1))
             (v, a), (vr, ar) = shares
             ratios.append((v / vr, a / ar, costs[0] / costs[1]))
             print(

@@ -18,32 +18,28 @@ from scipy import sparse
 
 from bench.machine import machine
 from fullpose.attitude import dcm_from_quaternion
-from fullpose.plan import plan
+from fullpose.plan.plan import plan_problem
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
-from fullpose.trajectory import sqp as refine_module
-from fullpose.trajectory.qp import Matrices, QuadraticProgramme, matrices, solve_programme
+from fullpose.trajectory.interior_point import TOLERANCE, solve_by_piqp
+from fullpose.trajectory.problem import Problem
+from fullpose.trajectory.qp import Matrices, Minimiser
 
-TOLERANCE = 1e-7
 FLIGHTS = ((3, 60.0), (7, 120.0), (0, 120.0), (6, 120.0))
 
 
 def collect() -> list[Matrices]:
     """The programmes of planning the flights, 10 s at 1 kHz each."""
-    found: list[QuadraticProgramme] = []
+    found: list[Matrices] = []
 
-    def keep(problem: QuadraticProgramme) -> Any:
-        found.append(problem)
-        return solve_programme(problem)
+    def keep(given: Matrices) -> Minimiser:
+        found.append(given)
+        return solve_by_piqp(given)
 
-    refine_module.solve_programme = keep  # type: ignore[attr-defined]
-    try:
-        for seed, rate in FLIGHTS:
-            t, q = random_flight(seed, 10.0, 1000.0, np.radians(rate))
-            plan(t, dcm_from_quaternion(q), builtin_rigs()["vertical-limited"])
-    finally:
-        refine_module.solve_programme = solve_programme  # type: ignore[attr-defined]
-    return [matrices(problem) for problem in found]
+    for seed, rate in FLIGHTS:
+        t, q = random_flight(seed, 10.0, 1000.0, np.radians(rate))
+        plan_problem(Problem(t, dcm_from_quaternion(q), builtin_rigs()["vertical-limited"], solver=keep))
+    return found
 
 
 def with_piqp(p: Matrices) -> Any:

@@ -1,14 +1,27 @@
 """Which bound of which frame: the one coding of it, for kernels, records of samples, programmes, verdicts and files.
 
-Kernels take a frame and a limit as the indices of `FRAMES` and `LIMITS`. A limit of a frame has a code, 1..12, which is
-what a sample is marked with that the limit kept from the attitude; 0 marks a sample that none did.
+Kernels take a frame and a limit as the indices of `FRAMES` and `LIMITS`, and a side. A limit of a frame has a code,
+1..12, which is what a sample is marked with that the limit kept from the attitude; 0 marks a sample that none did.
 """
 
+from typing import NamedTuple
+
+from fullpose._typing import Integers
 from fullpose.rig import FRAMES, LIMITS, Frame, Limit
 
 POSITION, RATE, ACCELERATION = (LIMITS.index(limit) for limit in Limit)
 EXACT = 0  # the code of a sample that no limit kept from the attitude
 CODES_PER_FRAME = len(LIMITS)
+LOWER, UPPER = range(2)  # sides
+MET = 1e-7  # of a limit: over it by less counts as inside
+
+
+class Bound(NamedTuple):
+    """Sides of limits of frames, as indices: (r,) each. The order is that of the columns where they are one array."""
+
+    frame: Integers
+    limit: Integers
+    side: Integers
 
 
 def limited_code(frame: int, limit: int) -> int:

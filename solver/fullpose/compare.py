@@ -13,6 +13,7 @@ from fullpose._typing import Array, Integers
 from fullpose.bounds import limited_name
 from fullpose.errors import MethodError
 from fullpose.flight import check_flight
+from fullpose.kinematics import singularity_measures
 from fullpose.registry import Stepwise, Variant, find_method, method_options, parse_variant
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Solution
@@ -21,7 +22,7 @@ from fullpose.verify import Verification, verify
 
 # A sample is exact within 1e-9 deg: a hundred times the rounding of the geodesic error, far below any encoder.
 EXACT_WITHIN = np.deg2rad(1e-9)
-# sin^2 d2 + cos^2 d3 below this: within about 6 deg of the four-axis rig's singularity.
+# `singularity_measure` below this: within about 6 deg of the four-axis rig's singularity.
 SINGULAR_BELOW = 0.01
 
 
@@ -89,7 +90,7 @@ def failures(solution: Solution) -> tuple[Failure, ...]:
     d = solution.angles
     singular = np.zeros(len(d), bool)
     if solution.rig.geometry.redundant:
-        singular = np.sin(d[:, 1]) ** 2 + np.cos(d[:, 2]) ** 2 < SINGULAR_BELOW
+        singular = singularity_measures(d) < SINGULAR_BELOW
     groups: list[tuple[str, NDArray[np.bool_]]] = []
     for code in np.unique(solution.limited[missed & (solution.limited > 0)]):
         name = limited_name(int(code))

@@ -1,5 +1,5 @@
 """What a flight is: times that increase, in a range where rates and accelerations stay numbers, and attitudes that are
-rotations; and what a start pose of it may be."""
+rotations; and what a start of it may be."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -68,11 +68,29 @@ def check_start(start: ArrayLike | None, rig: Rig) -> Array | None:
     """The start pose (4,) [rad], or None. Raises `InputError` where it is not a pose of the rig."""
     if start is None:
         return None
-    pose = np.ascontiguousarray(start, dtype=np.float64)
-    if pose.shape != (4,) or not np.isfinite(pose).all():
-        raise InputError("start", None, pose.tolist(), "four finite angles, base first")
+    pose = _four("start", start, "angles")
     for i in rig.geometry.frames:
         if not rig.position_min[i] <= pose[i] <= rig.position_max[i]:
             allowed = f"between {rig.position_min[i]:.6g} and {rig.position_max[i]:.6g} rad for this rig"
             raise InputError(f"start of the {FRAMES[i]} frame", None, float(pose[i]), allowed)
     return pose
+
+
+def check_start_rate(rate: ArrayLike | None, rig: Rig) -> Array | None:
+    """The start rate (4,) [rad/s], or None. Raises `InputError` where it is not a rate of the rig."""
+    if rate is None:
+        return None
+    v = _four("start_rate", rate, "rates in rad/s")
+    for i in rig.geometry.frames:
+        if abs(v[i]) > rig.max_rate[i]:
+            allowed = f"at most {rig.max_rate[i]:.6g} rad/s"
+            raise InputError(f"start_rate of the {FRAMES[i]} frame", None, float(v[i]), allowed)
+    return v
+
+
+def _four(name: str, values: ArrayLike, what: str) -> Array:
+    """One number a frame (4,)."""
+    four = np.ascontiguousarray(values, dtype=np.float64)
+    if four.shape != (4,) or not np.isfinite(four).all():
+        raise InputError(name, None, four.tolist(), f"four finite {what}, base first")
+    return four

@@ -6,6 +6,8 @@ the outer frame into the inner one.
 
 import math
 
+import numpy as np
+
 from fullpose._jit import inlined, inner, kernel
 from fullpose._typing import Array, Integers
 
@@ -146,6 +148,11 @@ def singularity_measure(d: Array) -> float:
     s = math.sin(d[1])
     c = math.cos(d[2])
     return s * s + c * c
+
+
+def singularity_measures(d: Array) -> Array:
+    """`singularity_measure` of every row. d (n, 4) [rad], the measures (n,)."""
+    return np.asarray(np.sin(d[:, 1]) ** 2 + np.cos(d[:, 2]) ** 2)
 
 
 @inlined

@@ -1,137 +1,159 @@
-"""Lead-in and lead-out: from rest to a path that begins in motion, and from its end to rest.
+"""Leads: the way from rest to the first sample of a path that begins in motion, and from its last sample to rest.
 
-Each frame's rate follows a cubic from 0 with no acceleration to the path's rate with the path's acceleration, so the
-joint is twice continuously differentiable and the rest before it is rest: with s = t / T,
-v(t) = v (3 s^2 - 2 s^3) + a T (s^3 - s^2). Each frame takes the shortest time T that keeps its samples inside its
-limits; where there is no room for any, an acceleration that ramps up to nearly its limit, holds, and ramps to the
-path's, which needs little more than the braking distance. A frame that needs less time than the others rests first.
-A lead-out is a lead-in in reversed time.
+Each frame's rate goes to zero along a curve with a plateau of acceleration in the middle, reached and left as a cosine,
+and the path's own acceleration dies out beside it, so that angles, rates and accelerations are continuous. Each frame
+takes the shortest time, but a tenth of a second where there is room for it, for which its sampled lead, the joint with
+the path included, keeps inside its limits; where its stop is too near, the acceleration rises and falls more quickly,
+which needs little more than the braking distance. A frame that needs less time than the others rests first. One
+without an acceleration limit that has no room for any of that stops at once. A lead-in is a lead-out in reversed time.
 """
 
 import math
-from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
-from scipy.interpolate import PPoly
 
 from fullpose._typing import Array
-from fullpose.errors import InputError, MethodError
-from fullpose.rig import FRAMES, LIMITS, FrameLimits, Rig
-from fullpose.verify import POSITION_TOLERANCE, TOLERANCE
+from fullpose.bounds import ACCELERATION, MET, POSITION, RATE
+from fullpose.rig import FRAMES, LIMITS, Rig
 
-SHORTEST, LONGEST = 0.1, 20.0  # [s] of a cubic
-STRETCH = 1.02  # from one duration that is tried to the next
-RAMPS = (0.2, 0.1, 0.05, 0.02, 0.01)  # [s]
-FULL = 0.999  # of the acceleration limit
-AT_REST = 1e-9  # of a rate [rad/s] or acceleration [rad/s^2]
+GENTLE, LONGEST = 0.1, 120.0  # [s]
+LONGER = 1.04  # times the time tried before
+EDGES = (0.25, 0.1, 0.03)  # shares of the lead in which the acceleration rises, and in which it falls; tried in turn
+PEAK = 1.1  # times the rate over the time: the least acceleration of a lead, or what its plateau asks for if less
+AT_REST = 1e-9  # of a limit: rates and accelerations below this need no lead
 
 
-def lead_in(rig: Rig, position: ArrayLike, rate: ArrayLike, acceleration: ArrayLike, dt: float) -> Array:
-    """Samples from rest to the path, (m, 4) [rad], one every `dt` [s]; the path's own first sample is not repeated.
+@dataclass(frozen=True)
+class Lead:
+    """Samples (m, 4) [rad] at the interval of the path's end, without that end; none, and why, where there is no room.
 
-    position, rate, acceleration (4,) [rad, rad/s, rad/s^2] are those of the path's first sample. m is 0 for a path that
-    begins at rest. Raises `MethodError`, naming frame and limit, where there is no room, `InputError` for bad numbers.
+    None for a path that is at rest there, either.
     """
-    x, v, a = (
-        _checked(name, value)
-        for name, value in (("position", position), ("rate", rate), ("acceleration", acceleration))
-    )
-    if not (math.isfinite(dt) and dt > 0.0):
-        raise InputError("dt", None, dt, "a number of seconds above zero")
-    columns = [
-        _frame_lead(FRAMES[i], rig.frames[i], float(x[i]), float(v[i]), float(a[i]), dt)
-        if i in rig.geometry.frames
-        else np.empty(0)
-        for i in range(4)
-    ]
-    m = max(len(column) for column in columns)
-    lead = np.empty((m, 4))
-    for i, column in enumerate(columns):
-        lead[: m - len(column), i] = column[0] if len(column) else x[i]
-        lead[m - len(column) :, i] = column
-    return lead
+
+    angles: Array
+    refusal: str = ""
 
 
-def lead_out(rig: Rig, position: ArrayLike, rate: ArrayLike, acceleration: ArrayLike, dt: float) -> Array:
-    """Samples from the path's last sample, which is not repeated, to rest: (m, 4) [rad], one every `dt` [s].
+NONE = np.empty((0, 4))
 
-    As `lead_in`, of which it is the mirror in time: rates change their sign, accelerations do not.
+
+def lead_in(time: Array, angles: Array, rig: Rig) -> Lead:
+    """The way from rest to the first sample. time (k,) [s], angles (k, 4) [rad]: the first few samples of the path."""
+    lead = lead_out(-time[::-1], angles[::-1], rig)
+    return Lead(lead.angles[::-1].copy(), lead.refusal.replace("brake to rest", "come from rest"))
+
+
+def lead_out(time: Array, angles: Array, rig: Rig) -> Lead:
+    """The way from the last sample to rest. time (k,) [s], angles (k, 4) [rad]: the last few samples of the path."""
+    if len(time) < 2:
+        return Lead(NONE)
+    t, x = time[-3:], angles[-3:]
+    h = float(t[-1] - t[-2])
+    rate = (x[-1] - x[-2]) / h
+    bend = np.zeros(4)
+    if len(t) == 3:
+        bend = (rate - (x[-2] - x[-3]) / (t[-2] - t[-3])) / (0.5 * (t[-1] - t[-3]))
+    rate = rate + 0.5 * h * bend  # at the last sample rather than half an interval before
+    leads: list[Array] = []
+    for i in range(4):
+        if abs(x[-1, i] - x[-2, i]) / h <= AT_REST * min(float(rig.max_rate[i]), 1.0) and abs(bend[i]) * h <= AT_REST:
+            leads.append(np.empty(0))
+            continue
+        end = _End(t, x[:, i], float(rate[i]), float(bend[i]), h)
+        lead, limit = _frame_lead(end, rig, i)
+        if limit is not None:
+            return Lead(NONE, f"no room to brake to rest: the {FRAMES[i]} frame's {LIMITS[limit]} limit closes the way")
+        leads.append(lead)
+    samples = np.repeat(x[-1:], max(len(lead) for lead in leads), axis=0)
+    for i, lead in enumerate(leads):
+        samples[: len(lead), i] = lead
+        samples[len(lead) :, i] = lead[-1] if lead.size else x[-1, i]
+    return Lead(samples)
+
+
+@dataclass(frozen=True)
+class _End:
+    """One frame at the end of a path: its last angles x (k,) [rad] at t (k,) [s], and its motion at the last of them.
+
+    rate [rad/s], bend [rad/s^2]; h [s] is the interval of the lead's samples.
     """
-    return lead_in(rig, position, -np.asarray(rate, float), acceleration, dt)[::-1].copy()
+
+    t: Array
+    x: Array
+    rate: float
+    bend: float
+    h: float
 
 
-def _frame_lead(frame: str, limits: FrameLimits, x: float, v: float, a: float, dt: float) -> Array:
-    """One frame's lead-in, (m,) [rad], the first candidate that obeys the limits."""
-    if abs(v) <= AT_REST and abs(a) <= AT_REST:
-        return np.empty(0)
-    closest: tuple[float, str, float, float] | None = None
-    for lead in _candidates(limits, x, v, a, dt):
-        shortfall = _shortfall(limits, lead, x, v, a, dt)
-        if shortfall is None:
-            return lead
-        limit, value, allowed = shortfall
-        excess = abs(abs(value) - abs(allowed)) / max(abs(allowed), 1e-12)
-        if closest is None or excess < closest[0]:
-            closest = (excess, limit, value, allowed)
-    _, limit, value, allowed = closest or (0.0, LIMITS[1], v, limits.max_rate)
-    raise MethodError(
-        f"no lead for the {frame} frame: its {limit} would be {value:.6g} where {allowed:.6g} is allowed (rad, s); "
-        f"the path begins or ends with {v:.6g} rad/s and {a:.6g} rad/s^2 at {x:.6g} rad"
-    )
+def _frame_lead(end: _End, rig: Rig, frame: int) -> tuple[Array, int | None]:
+    """(angles (m,) [rad] of one frame on its way to rest, None) or (empty, the limit that closes the way)."""
+    closed: int | None = POSITION
+    for edge in EDGES:
+        if closed != POSITION:  # what a quicker rise does not help
+            break
+        lead, closed = _shortest(end, rig, frame, edge)
+        if closed is None:
+            return lead, None
+    if _outside(end, np.r_[end.x, end.x[-1], end.x[-1]], 2, rig, frame) is None:  # at once: no acceleration limit
+        return np.empty(0), None
+    return np.empty(0), closed
 
 
-def _candidates(limits: FrameLimits, x: float, v: float, a: float, dt: float) -> Iterator[Array]:
-    """Lead-ins from smooth and short to tight, each (m,) [rad]."""
-    # Below this duration the cubic's peak alone, 1.5 v / T, is above the limit.
-    least = 1.5 * abs(v) / limits.max_acceleration if math.isfinite(limits.max_acceleration) else 0.0
-    samples = max(2, math.ceil(max(0.9 * least, SHORTEST) / dt))
-    while samples * dt <= LONGEST:
-        T = samples * dt
-        s = np.arange(samples) / samples
-        # x(0) = x - v T / 2 + a T^2 / 12, and then the integral of v(t)
-        yield x - v * T / 2 + a * T * T / 12 + v * T * (s**3 - s**4 / 2) + a * T * T * (s**4 / 4 - s**3 / 3)
-        samples = max(samples + 1, int(samples * STRETCH))
-    if math.isinf(limits.max_acceleration):
-        return
-    for ramp in RAMPS:
-        peak = math.copysign(FULL * limits.max_acceleration, v)
-        hold = (v - peak * ramp - 0.5 * a * ramp) / peak
-        if hold >= 0.0:
-            yield _trapezoid(x, a, peak, ramp, hold, dt)
+def _shortest(end: _End, rig: Rig, frame: int, edge: float) -> tuple[Array, int | None]:
+    """`_frame_lead` with one share of the lead in which the acceleration rises."""
+    h = end.h
+    peak = min(PEAK, 1.0 / (1.0 - edge))
+    shortest = max(4.0 * h, peak * abs(end.rate) / min(float(rig.max_acceleration[frame]), 1e6))
+    closed = RATE
+    for T in (max(shortest, GENTLE), shortest):  # hurried only where there is no room for better
+        closed = RATE
+        while T < LONGEST:
+            m = max(4, math.ceil(T / h))
+            lead = end.x[-1] + braking(np.arange(1, m + 1) / m, end.rate, end.bend, m * h, edge)
+            limit = _outside(end, np.r_[end.x, lead, lead[-1], lead[-1]], m + 2, rig, frame)
+            if limit is None:
+                return lead, None
+            closed = limit
+            if limit == POSITION:
+                break  # longer is farther
+            T = LONGER * T + h
+    return np.empty(0), closed
 
 
-def _trapezoid(x: float, a: float, peak: float, ramp: float, hold: float, dt: float) -> Array:
-    """(m,) [rad]: acceleration 0, up to `peak` within `ramp` [s], held for `hold` [s], to `a` within `ramp`."""
-    knots = np.cumsum([0.0, ramp, hold, ramp]) if hold > 0.0 else np.array([0.0, ramp, 2.0 * ramp])
-    levels = np.array([0.0, peak, peak, a]) if hold > 0.0 else np.array([0.0, peak, a])
-    position = PPoly(np.stack([np.diff(levels) / np.diff(knots), levels[:-1]]), knots).antiderivative(2)
-    m = math.ceil(knots[-1] / dt)
-    t = np.maximum(knots[-1] - dt * np.arange(m, 0, -1), 0.0)
-    return np.asarray(x - float(position(knots[-1])) + position(t))
-
-
-def _shortfall(
-    limits: FrameLimits, lead: Array, x: float, v: float, a: float, dt: float
-) -> tuple[str, float, float] | None:
-    """(limit, value, allowed) of the limit the lead exceeds most plainly, as the samples' differences; None if none."""
-    # Rest before, and one sample of the path beyond the joint.
-    path = np.concatenate([[lead[0], lead[0]], lead, [x, x + v * dt + 0.5 * a * dt * dt]])
-    rate = np.diff(path) / dt
-    acceleration = np.diff(rate) / dt
-    if path.min() < limits.min - POSITION_TOLERANCE:
-        return LIMITS[0], float(path.min()), limits.min
-    if path.max() > limits.max + POSITION_TOLERANCE:
-        return LIMITS[0], float(path.max()), limits.max
-    for limit, values, allowed in ((1, rate, limits.max_rate), (2, acceleration, limits.max_acceleration)):
-        worst = int(np.argmax(np.abs(values)))
-        if abs(values[worst]) > allowed * (1.0 + 0.5 * TOLERANCE):
-            return LIMITS[limit], float(values[worst]), allowed
+def _outside(end: _End, path: Array, added: int, rig: Rig, frame: int) -> int | None:
+    """The limit of the frame that the path, `added` samples after those of the end, is outside of, or None."""
+    t, h = end.t, end.h
+    v = np.diff(path) / np.r_[np.diff(t), np.full(added, h)]
+    a = np.diff(v) / np.r_[0.5 * (t[2:] - t[:-2]), np.full(added, h)]
+    if np.abs(a).max() > rig.max_acceleration[frame] * (1.0 + MET):
+        return ACCELERATION
+    if np.abs(v).max() > rig.max_rate[frame] * (1.0 + MET):
+        return RATE
+    if path.max() > rig.position_max[frame] or path.min() < rig.position_min[frame]:
+        return POSITION
     return None
 
 
-def _checked(name: str, value: ArrayLike) -> Array:
-    array = np.asarray(value, float)
-    if array.shape != (4,) or not np.isfinite(array).all():
-        raise InputError(name, None, array.tolist(), "four finite numbers, base first")
-    return array
+def braking(s: Array, rate: float, bend: float, T: float, edge: float) -> Array:
+    """Angle gone (m,) [rad] at shares s (m,) of the time T, from rate [rad/s] and acceleration [rad/s^2] to rest.
+
+    The rate falls as 1 - smooth(s), smooth rising with a plateau of slope over the middle, between two edges of the
+    share `edge`; the path's acceleration dies out as (1 - s)^3 s.
+    """
+    q = edge
+    top = 1.0 / (1.0 - q)  # slope of the plateau
+    u0 = np.clip(s / q, 0.0, 1.0)
+    u1 = np.clip((s - 1.0 + q) / q, 0.0, 1.0)
+    middle = np.clip(s - q, 0.0, 1.0 - 2.0 * q)
+    late = np.maximum(s - 1.0 + q, 0.0)
+    # The step's integral piece by piece: rising edge, plateau, and after it the plateau's end value and falling edge.
+    step = top * (_edge(u0, q) + 0.5 * q * np.maximum(s - q, 0.0) + 0.5 * middle**2 + (1.0 - 2.0 * q) * late)
+    step += top * (0.5 * (q * u1) ** 2 - _edge(u1, q))
+    die = 0.5 * s**2 - s**3 + 0.75 * s**4 - 0.2 * s**5  # integral of s (1 - s)^3
+    return rate * T * (s - step) + bend * T * T * die
+
+
+def _edge(u: Array, q: float) -> Array:
+    """Second integral, in units of the whole, of a slope that rises 0 to 1 as a cosine over the share q; u in 0..1."""
+    return np.asarray(q * q * (0.25 * u * u - (1.0 - np.cos(np.pi * u)) / (2.0 * np.pi**2)))

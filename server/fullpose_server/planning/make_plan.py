@@ -116,7 +116,7 @@ def _solve(request: PlanRequest, at: Array, q: Array, progress: Progress) -> _Ma
     if made is not None:  # it keeps room for its own leads and says what its verdict rests on
         return _Made(solution, q, made.verdict.statement, lambda: _planned(made), made)
     verdict = "Every sample checked against the limits by code apart from the solver; another method may find more."
-    return _Made(solution, q, verdict, lambda: _leads(solution, request.rate_hz))
+    return _Made(solution, q, verdict, lambda: _leads(solution))
 
 
 def _remedied(
@@ -185,35 +185,14 @@ def _write(
     }
 
 
-def _leads(solution: Solution, rate_hz: float) -> tuple[Array, Array]:
-    """Way in and out, (m, 4) [rad] each, joined to the flight's own rate and acceleration at its ends."""
-    dt = 1.0 / rate_hz
-    first = end_motion(solution.angles, dt)
-    last = end_motion(solution.angles[::-1], -dt)
-    return lead_in(solution.rig, *first, dt), lead_out(solution.rig, *last, dt)
-
-
-def end_motion(angles: Array, dt: float) -> tuple[Array, Array, Array]:
-    """Position, rate and acceleration (4,) at the first row of angles (n, 4), by one-sided differences of up to
-    fourth order; with -dt and the rows reversed, at the last."""
-    x = angles[:5]
-    rate_rows = {
-        1: [0.0],
-        2: [-1, 1],
-        3: [-1.5, 2, -0.5],
-        4: [-11 / 6, 3, -1.5, 1 / 3],
-        5: [-25 / 12, 4, -3, 4 / 3, -0.25],
-    }
-    acceleration_rows = {
-        1: [0.0],
-        2: [0.0, 0.0],
-        3: [1, -2, 1],
-        4: [2, -5, 4, -1],
-        5: [35 / 12, -26 / 3, 9.5, -14 / 3, 11 / 12],
-    }
-    rate = np.array(rate_rows[len(x)]) @ x / dt
-    acceleration = np.array(acceleration_rows[len(x)]) @ x / dt**2
-    return np.array(x[0]), rate, acceleration
+def _leads(solution: Solution) -> tuple[Array, Array]:
+    """The ways from rest to a flight and back to it. Raises `MethodError` where there is no room for one."""
+    time, angles, rig = solution.time, solution.angles, solution.rig
+    into, out = lead_in(time[:3], angles[:3], rig), lead_out(time[-3:], angles[-3:], rig)
+    for lead in (into, out):
+        if lead.refusal:
+            raise MethodError(lead.refusal)
+    return into.angles, out.angles
 
 
 def _path_refusal(angles: Array, rate_hz: float, rig: Rig, lead: int) -> str | None:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._typing import Array, Codes, Integers
-from fullpose.bounds import EXACT, limited_code
+from fullpose.bounds import ACCELERATION, CODES_PER_FRAME, EXACT, POSITION, RATE, limited_code
 from fullpose.rig import Rig
 from fullpose.trajectory.curve import LOCKED
 from fullpose.trajectory.linearisation import POSITION_UNIT
@@ -13,7 +13,6 @@ from fullpose.verify import attitude_errors, differences, payload_attitudes
 CHUNK = 1 << 16  # samples looked at together
 AT_LIMIT = 0.02  # share of a limit, or of `POSITION_UNIT` before a stop, within which it holds the frame
 TURNED = 1e-4  # [rad] a frame is turned by to see which way the attitude error falls
-KINDS = 3  # limits a frame
 
 
 def active_limits(
@@ -35,9 +34,9 @@ def active_limits(
         part = slice(begin, begin + CHUNK)
         at, held = lost[part], nearest[part]
         descent = _descent(attitude[at], angles[at], rig)
-        gain = np.repeat(np.abs(descent)[:, :, None], KINDS, axis=2)
+        gain = np.repeat(np.abs(descent)[:, :, None], CODES_PER_FRAME, axis=2)
         upper = rig.position_max - angles[held] < angles[held] - rig.position_min
-        gain[:, :, 0] = np.maximum(0.0, np.where(upper, descent, -descent))
+        gain[:, :, POSITION] = np.maximum(0.0, np.where(upper, descent, -descent))
         gain[~active[held]] = -1.0
         best = np.argmax(gain.reshape(len(at), -1), axis=1)
         codes[at] = limited_code(0, 0) + best
@@ -53,11 +52,10 @@ def _active(time: Array, angles: Array, rig: Rig) -> NDArray[np.bool_]:
     has = np.isfinite(np.stack([rig.position_max, rig.max_rate, rig.max_acceleration], axis=1))
     has &= (rig.axes >= 0)[:, None]
     free = has.copy()
-    free[:, 0] &= rig.position_max - rig.position_min >= LOCKED
-    has = free if free.any() else has
-    assert has.any()  # without a limit nothing keeps a rig from the attitude
+    free[:, POSITION] &= rig.position_max - rig.position_min >= LOCKED
+    has = free if free.any() else has  # at least one: without a limit nothing keeps a rig from the attitude
     n = len(time)
-    active = np.zeros((n, 4, KINDS), np.bool_)
+    active = np.zeros((n, 4, CODES_PER_FRAME), np.bool_)
     closest, within = np.inf, AT_LIMIT
     for _ in range(2):
         for begin in range(0, n, CHUNK):
@@ -76,14 +74,14 @@ def _active(time: Array, angles: Array, rig: Rig) -> NDArray[np.bool_]:
 
 def _left(time: Array, angles: Array, rig: Rig) -> Array:
     """What is left of each limit (n, 4, 3), as a share of it; inf where there is none or no difference shows it."""
-    left = np.full((len(time), 4, KINDS), np.inf)
-    left[:, :, 0] = np.minimum(rig.position_max - angles, angles - rig.position_min) / POSITION_UNIT
+    left = np.full((len(time), 4, CODES_PER_FRAME), np.inf)
+    left[:, :, POSITION] = np.minimum(rig.position_max - angles, angles - rig.position_min) / POSITION_UNIT
     if len(time) > 1:
         rate, acceleration = differences(time, angles)
         spare = 1.0 - np.abs(rate) / rig.max_rate
-        left[1:, :, 1] = spare
-        left[:-1, :, 1] = np.minimum(left[:-1, :, 1], spare)
-        left[1:-1, :, 2] = 1.0 - np.abs(acceleration) / rig.max_acceleration
+        left[1:, :, RATE] = spare
+        left[:-1, :, RATE] = np.minimum(left[:-1, :, RATE], spare)
+        left[1:-1, :, ACCELERATION] = 1.0 - np.abs(acceleration) / rig.max_acceleration
     return left
 
 

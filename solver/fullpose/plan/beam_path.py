@@ -17,7 +17,7 @@ from fullpose.rig import Rig
 from fullpose.trajectory.beam_search import Stages, Start, search
 from fullpose.trajectory.curve import closest_all
 from fullpose.trajectory.nodes import NARROW, empty_nodes, fill_nodes, lattice
-from fullpose.trajectory.options import PlanOptions
+from fullpose.trajectory.problem import Problem
 from fullpose.trajectory.stage_cost import Costs
 
 PIECE = 20.0  # [s] decided at once; bounds the memory, and the time until a cancel is heard
@@ -41,17 +41,15 @@ class Breadth:
 BREADTHS = (Breadth(1000, 5, 1.0), Breadth(4000, 9, 0.1), Breadth(4000, 9, 1.0))
 
 
-def beam_path(
-    time: Array, attitude: Array, rig: Rig, options: PlanOptions, breadth: Breadth, first: Array, first_rate: Array,
-    past: float, progress: Progress | None = None,
-) -> Array:  # fmt: skip
-    """Poses (k, 4) [rad], continuous, at the stages time (k,) [s], attitude (k, 3, 3); the limits exceeded least.
+def beam_path(stages: Problem, breadth: Breadth, first: Start, progress: Progress | None = None) -> Array:
+    """Poses (k, 4) [rad], continuous, at the k samples of `stages`; the limits exceeded least.
 
-    It begins at one of `first` (m, 4) [rad], with its rate (m, 4) [rad/s] over the interval `past` [s] just past; 0:
-    any rate may follow. progress(done, total) after each piece.
+    progress(done, total) after each piece.
     """
+    time, attitude, rig = stages.time, stages.attitude, stages.rig
     n = len(time)
-    costs = Costs(1.0, breadth.acceleration_cost, SINGULARITY_COST, RANGE_COST, EXCESS_COST, float(options.home_cost))
+    home = float(stages.options.home_cost)
+    costs = Costs(1.0, breadth.acceleration_cost, SINGULARITY_COST, RANGE_COST, EXCESS_COST, home)
     table = limit_table(rig)
     node_path = np.empty((n, 4))
     begin = 0
@@ -61,10 +59,9 @@ def beam_path(
         following = n - 1 if end == n else max(begin + 1, int(np.searchsorted(time, time[begin] + PIECE)))
         end = max(end, following + 1)
         piece = np.empty((end - begin, 4))
-        stages = Stages(time[begin:end], attitude[begin:end], np.ones(end - begin))
+        part = Stages(time[begin:end], attitude[begin:end], np.ones(end - begin))
         search(
-            rig.geometry.horizontal, table, costs, stages, Start(first, first_rate, past),
-            breadth.slides, breadth.beam, piece,
+            rig.geometry.horizontal, table, costs, part, first, breadth.slides, breadth.beam, piece,
         )  # fmt: skip
         node_path[begin : following + 1] = piece[: following + 1 - begin]
         if progress is not None:
@@ -72,8 +69,8 @@ def beam_path(
         if end == n:
             return node_path
         past = float(time[following] - time[following - 1])
-        first = node_path[following : following + 1].copy()
-        first_rate = (node_path[following : following + 1] - node_path[following - 1 : following]) / past
+        pose, before = node_path[following : following + 1], node_path[following - 1 : following]
+        first = Start(pose.copy(), (pose - before) / past, past)
         begin = following
 
 

@@ -25,6 +25,7 @@ from fullpose.trajectory.options import PlanOptions
 from fullpose.vocabulary import RemedyKind
 
 TRIAL_INTERVAL = 0.005  # [s] between the samples that a trial looks at
+LARGEST_RAISE = 8.0  # times a rate or acceleration limit
 RELATIVE = 0.01  # to which factors are found
 NOTHING = "nothing"  # what is changed of a flight that fits as it is, where limits are raised
 AXES = ("roll", "yaw", "pitch")  # of the body's x, y, z
@@ -198,13 +199,12 @@ def smallest_share(margins: Margins, rig: Rig) -> float:
 def relax(
     time: ArrayLike, attitude: ArrayLike, rig: Rig, frame: str | None = None, limit: str | None = None,
     start: ArrayLike | None = None, options: PlanOptions | None = None, progress: Progress | None = None,
-    largest: float = 8.0,
 ) -> list[Remedy]:  # fmt: skip
     """Which single limit, raised by how much, would make the flight feasible: the ones that would, least raise first.
 
     frame, limit: of the rig's frames and `LIMITS`, to look at one alone; None: all. Rates and accelerations are raised
-    up to `largest` times, ranges widened on both sides up to a turn in all, to within 1 %. A flight that fits as it is
-    has one remedy, `NOTHING`; the list is empty where no single limit is enough. Raises `CancelledError` from
+    up to `LARGEST_RAISE` times, ranges widened on both sides up to a turn in all, to within 1 %. A flight that fits as
+    it is has one remedy, `NOTHING`; the list is empty where no single limit is enough. Raises `CancelledError` from
     progress, `InputError` for names that are none.
     """
     present = [FRAMES[i] for i in rig.geometry.frames]
@@ -224,7 +224,7 @@ def relax(
         trials.done = 10 * number
 
         def fits(share: float, i: int = i, kind: int = kind) -> bool:
-            return trials.feasible(t, C, raised(rig, i, kind, share, largest)).ready
+            return trials.feasible(t, C, raised(rig, i, kind, share)).ready
 
         if not fits(1.0):
             continue
@@ -235,7 +235,7 @@ def relax(
         found.append((high, i, kind))
     remedies = []
     for share, i, kind in sorted(found):
-        wider = raised(rig, i, kind, share, largest)
+        wider = raised(rig, i, kind, share)
         value = (wider.position_max, wider.max_rate, wider.max_acceleration)[kind][i]
         made = trials.final(t, C, wider)
         if made.ready:
@@ -256,7 +256,7 @@ def _limits(rig: Rig) -> Iterator[tuple[int, int]]:
                 yield i, kind
 
 
-def raised(rig: Rig, frame: int, kind: int, share: float, largest: float) -> Rig:
+def raised(rig: Rig, frame: int, kind: int, share: float, largest: float = LARGEST_RAISE) -> Rig:
     """The rig with one limit raised by `share` (0..1) of the way to `largest` times it (ranges: to one turn more)."""
     limits: FrameLimits = rig.frames[frame]
     factor = largest**share

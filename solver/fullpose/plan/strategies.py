@@ -1,19 +1,26 @@
-"""The search for one flight's path: node paths, the smooth curve along one, its refinement, others where it failed."""
+"""How a path inside every limit is looked for: a table of attempts, taken in turn until one has it.
+
+An attempt is given the task, which does not change, and the state that those before it came to, and returns the next
+state. What each of them adds was measured (docs/decisions/0005-planner.md).
+"""
 
 import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fullpose._typing import Array, Progress
-from fullpose.plan.beam_path import BREADTHS, attainable_rates, beam_path, first_poses
+from fullpose.bounds import MET
+from fullpose.plan.beam_path import BREADTHS
 from fullpose.plan.fallback import EXACT_ERROR, Fallback
-from fullpose.plan.three_axis import turns_into_range
-from fullpose.rig import Rig
-from fullpose.trajectory.nodes import lattice
-from fullpose.trajectory.options import PlanOptions
-from fullpose.trajectory.shortest_path import Avoid, NodePath, Programme
-from fullpose.trajectory.sqp import MET, locked, missed_rate
-from fullpose.trajectory.windows import Path, overrun, refine_path, smooth_curve, stage_samples
+from fullpose.plan.node_paths import Query, cheapest, searched
+from fullpose.trajectory.constraints import largest_violation, rig_limits
+from fullpose.trajectory.nodes import OVERLAP
+from fullpose.trajectory.problem import Problem
+from fullpose.trajectory.shortest_path import Avoid, NodePath
+from fullpose.trajectory.sqp import RATE_MET, locked, missed_rate
+from fullpose.trajectory.windows import Path, refine_path, smooth_curve, stage_samples
 from fullpose.verify import attitude_errors, payload_attitudes
 
 AVOID_RADIUS = math.radians(30.0)
@@ -22,145 +29,263 @@ AVOID_TIME = 0.4  # [s] before and after
 WIDE_SECONDS = 600.0  # of a flight that is searched widely: up to a tenth of its length each time
 
 
-class Search:
-    """One flight's search for a path; keeps what the attempts share."""
+@dataclass(frozen=True)
+class Task:
+    """What every attempt is given: the problem, paths that are taken sample by sample, and who is told of progress."""
 
-    def __init__(
-        self, time: Array, attitude: Array, rig: Rig, start: Array | None, start_rate: Array | None,
-        options: PlanOptions, progress: Progress | None,
-    ) -> None:  # fmt: skip
-        self.time, self.attitude, self.rig, self.options, self.progress = time, attitude, rig, options, progress
-        self.start = start
-        self.start_rate = start_rate
-        if start is not None and start_rate is not None:  # what the attitude leaves of it
-            interval = float(time[1] - time[0])
-            self.start_rate = attainable_rates(attitude[1], interval, rig, start[None], start_rate)[0]
-        self.counted = np.zeros(4, np.bool_)
-        self.avoid: list[Avoid] = []
-        self.margin_gain = 1.0
-        self.node_paths = 0
-        self.samples = stage_samples(time, options.stage)
-        self.fallback = Fallback(time, attitude, rig, start)
+    problem: Problem
+    fallback: Fallback
+    progress: Progress | None = None
 
-    def node_path(self, grid: float, slack: float = 0.0, stretch: float = 1.0, excess: float = 0.0) -> NodePath:
-        """The cheapest node path on a grid [rad]; turns of wide frames counted only as far as their ranges need it."""
-        low, high = self.rig.position_min, self.rig.position_max
-        while True:
-            programme = Programme(
-                self.time[self.samples], self.attitude[self.samples], self.rig,
-                lattice(self.rig, grid, self.counted, slack), self.options, slack,
-            )  # fmt: skip
-            programme.avoid = self.avoid
-            programme.margin_gain = self.margin_gain
-            if self.start is not None and self.start_rate is not None:
-                programme.motion = self.start, self.start_rate
-            programme.stretch, programme.excess = stretch, excess
-            node_path = programme.run(self.start, self._report(0.0, 0.5))
-            if not node_path.found and programme.bounded:  # the verdict rests on all that the limits allow
-                programme.everywhere = True
-                node_path = programme.run(self.start, self._report(0.0, 0.5))
-            if not node_path.found:
-                return node_path
-            angles = node_path.angles
-            free = np.isfinite(high) & (high - low >= 2.0 * math.pi) & ~self.counted
-            if self.start is None and free.any():
-                shift = np.zeros(4)
-                shift[free] = turns_into_range(angles[:, free], low[free], high[free])
-                angles += shift
-            outside = free & ((angles.min(axis=0) < low - slack) | (angles.max(axis=0) > high + slack))
-            if not outside.any():
-                return node_path
-            self.counted |= outside
-
-    def curve(self, node_path: NodePath) -> Array:
-        """The smooth exact path along a node path (n, 4) [rad]."""
-        return smooth_curve(self.time, self.attitude, self.rig, self.samples, node_path, self.start)
-
-    def refine(self, node_path: NodePath) -> Path:
-        """A path along a node path."""
-        self.node_paths += 1
-        return self._refined(self.curve(node_path))
-
-    def refine_step(self, way: Array) -> Path | None:
-        """A path next to one of `fallback`, or that itself; None where it is not exact, or a start rate is asked for.
-
-        No flight is refused that a method flies which looks at less of it.
-        """
-        error, _ = attitude_errors(payload_attitudes(self.rig, way), self.attitude)
-        if self.start_rate is not None or error.max() > EXACT_ERROR or overrun(self.time, way, self.rig)[0] > MET:
+    def told(self, begin: float, share: float) -> Progress | None:
+        """Progress of a part of the work, from the share `begin` on, in samples."""
+        n, tell = len(self.problem), self.progress
+        if tell is None:
             return None
-        path = self._refined(way.copy())
-        if overrun(self.time, path.angles, self.rig)[0] <= MET:
-            return path
-        return Path(way.copy(), (), np.zeros(len(way), np.int32))
-
-    def _refined(self, angles: Array) -> Path:
-        return refine_path(
-            self.time, self.attitude, angles, self.rig, self.options, start=self.start is not None,
-            start_rate=self.start_rate, progress=self._report(0.5, 0.5),
-        )  # fmt: skip
-
-    def missed(self, path: Path) -> float:
-        """How far a path is from the start rate asked for: `missed_rate`; 0 where none was."""
-        if self.start_rate is None:
-            return 0.0
-        return missed_rate(self.time, path.angles, self.rig, self.start_rate)
-
-    def steer_away(self, path: Path) -> None:
-        """Make the places where a path failed dear to the node paths to come."""
-        for failure in path.failures:
-            reach = max(AVOID_TIME, self.options.stage)
-            first = float(self.time[failure.sample]) - reach
-            part = slice(*np.searchsorted(self.time, (first, first + 2.0 * reach)))
-            self.avoid.append(Avoid(self.time[part], path.angles[part].copy(), AVOID_RADIUS, AVOID_COST))
-
-    def alternative(self, attempt: int, grid: float, slack: float) -> NodePath:
-        """Another node path, after some have failed; attempt from 1 on.
-
-        First without a price on the singularity: a flight that must pass through it is better off going straight.
-        Then those that know the accelerations, ever wider. Then away from the places that failed; then on a grid twice
-        as fine with stages half as far apart; then with four times the price on the singularity; then ever farther
-        away from the places that failed.
-        """
-        if 2 <= attempt < 2 + len(BREADTHS):
-            return self._beam_path(attempt - 2)
-        avoid = self.avoid
-        number = attempt if attempt == 1 else attempt - len(BREADTHS)
-        self.margin_gain = 0.0 if number == 1 else 4.0 if number == 4 else 1.0
-        if number in (1, 4):
-            self.avoid = []
-        if number == 3 and grid > self.options.fine_grid:
-            self.samples = stage_samples(self.time, 0.5 * self.options.stage)
-            self.avoid = []
-            grid = 0.5 * grid
-        node_path = self.node_path(grid, slack)
-        self.avoid = avoid
-        return node_path
-
-    def _beam_path(self, number: int) -> NodePath:
-        """The node path of one of `BREADTHS`; none where there is no freedom, or the flight too long for a wide one."""
-        none = NodePath(np.empty((0, 4)), math.inf, 0)
-        time, attitude = self.time[self.samples], np.ascontiguousarray(self.attitude[self.samples])
-        if len(time) < 2 or locked(self.rig) or (number > 0 and time[-1] - time[0] > WIDE_SECONDS):
-            return none
-        first = first_poses(attitude[0], self.rig) if self.start is None else self.start[None].copy()
-        if not len(first):
-            return none
-        first_rate, past = np.zeros_like(first), 0.0
-        if self.start_rate is not None:
-            past = float(self.time[1] - self.time[0])
-            first_rate = attainable_rates(self.attitude[1], past, self.rig, first, self.start_rate)
-        poses = beam_path(
-            time, attitude, self.rig, self.options, BREADTHS[number], first, first_rate, past, self._report(0.0, 0.5)
-        )
-        return NodePath(poses, math.nan, len(time))
-
-    def _report(self, begin: float, share: float) -> Progress | None:
-        if self.progress is None:
-            return None
-        n, tell = len(self.time), self.progress
 
         def report(done: int, total: int) -> None:
             tell(min(n - 1, int(n * (begin + share * done / total))), n)
 
         return report
+
+
+@dataclass(frozen=True)
+class State:
+    """What the attempts so far have come to."""
+
+    query: Query  # as the next node path is looked for, but for what an attempt changes of it for itself
+    cheapest: NodePath  # found, or how far the widest search came
+    avoid: tuple[Avoid, ...] = ()  # around the places that failed
+    node_paths: int = 0  # that were refined
+    best: Path | None = None  # of those, the least outside the limits,
+    violation: float = math.inf  # by this share
+    flown: Path | None = None  # inside them: the end of the search
+
+
+Step = Callable[[Task, State], State]
+Find = Callable[[Task, State], tuple[NodePath, State]]
+
+
+def first_look(task: Task) -> State:
+    """The cheapest node path, on the fine grid where the coarse one has none, there widened by the covering step.
+
+    What is not found so wide does not exist away from the singularity (mathematics, section 8).
+    """
+    options = task.problem.options
+    samples = stage_samples(task.problem.time, options.stage)
+    query = Query(samples, np.zeros(4, np.bool_), options.grid)
+    node_path, query = _cheapest(task, query)
+    if node_path.found:
+        return State(query, node_path)
+    query = replace(query, grid=options.fine_grid)
+    slack = options.fine_grid / OVERLAP
+    wide, answered = _cheapest(task, replace(query, slack=slack))
+    query = replace(query, turns=answered.turns)
+    if not wide.found:
+        return State(query, wide)
+    node_path, query = _cheapest(task, query)
+    return State(query, node_path) if node_path.found else State(replace(query, slack=slack), wide)
+
+
+def _cheapest(task: Task, query: Query) -> tuple[NodePath, Query]:
+    return cheapest(task.problem, query, task.told(0.0, 0.5))
+
+
+# What an attempt does
+
+
+def along(find: Find) -> Step:
+    """Refine the node path that `find` has; where that fails, the places it failed at are to be avoided."""
+
+    def step(task: Task, state: State) -> State:
+        node_path, state = find(task, state)
+        if not node_path.found:
+            return state
+        path = refined(task, smooth_curve(task.problem, state.query.samples, node_path))
+        violation = how_far(task.problem, path)
+        state = replace(state, node_paths=state.node_paths + 1)
+        if violation < state.violation:
+            state = replace(state, best=path, violation=violation)
+        if violation <= MET:
+            return replace(state, flown=path)
+        return replace(state, avoid=(*state.avoid, *_around(task.problem, path)))
+
+    return step
+
+
+def beside(paths: Callable[[Fallback], tuple[Array, ...]]) -> Step:
+    """Refine paths of the fallback that are exact and inside every limit; one that does not come out so is taken as
+    it is. No flight is refused that a method flies which looks at less of it."""
+
+    def step(task: Task, state: State) -> State:
+        if task.problem.start_rate is not None:  # they know nothing of it
+            return state
+        for angles in paths(task.fallback):
+            if (path := flown_beside(task, angles)) is not None:
+                return replace(state, flown=path)
+        return state
+
+    return step
+
+
+def kept(_task: Task, state: State) -> tuple[NodePath, State]:
+    """The node path of the first look."""
+    return state.cheapest, state
+
+
+def straight(task: Task, state: State) -> tuple[NodePath, State]:
+    """Without a price on the singularity: a flight that must pass through it is better off going straight."""
+    return _looked_for(task, state, margin_gain=0.0)
+
+
+def away(task: Task, state: State) -> tuple[NodePath, State]:
+    """Away from the places that failed; they are more each time."""
+    return _looked_for(task, state, avoid=state.avoid)
+
+
+def finer(task: Task, state: State) -> tuple[NodePath, State]:
+    """On a grid twice as fine, with stages half as far apart, as they stay from then on."""
+    problem = task.problem
+    samples = stage_samples(problem.time, 0.5 * problem.options.stage)
+    state = replace(state, query=replace(state.query, samples=samples))
+    return _looked_for(task, state, grid=0.5 * state.query.grid)
+
+
+def dearer(task: Task, state: State) -> tuple[NodePath, State]:
+    """With four times the price on the singularity."""
+    return _looked_for(task, state, margin_gain=4.0)
+
+
+def searching(number: int) -> Find:
+    """By the beam search, which knows the accelerations, with one of `BREADTHS`."""
+
+    def find(task: Task, state: State) -> tuple[NodePath, State]:
+        return searched(task.problem, state.query.samples, BREADTHS[number], task.told(0.0, 0.5)), state
+
+    return find
+
+
+def _looked_for(
+    task: Task, state: State, grid: float | None = None, margin_gain: float = 1.0, avoid: tuple[Avoid, ...] = ()
+) -> tuple[NodePath, State]:
+    """A node path of the state's query, changed for this once; the turns that it needed are counted from now on."""
+    query = replace(state.query, grid=grid or state.query.grid, margin_gain=margin_gain, avoid=avoid)
+    node_path, answered = _cheapest(task, query)
+    return node_path, replace(state, query=replace(state.query, turns=answered.turns))
+
+
+# When it applies
+
+
+def always(_task: Task, _state: State) -> bool:
+    """Whatever came before."""
+    return True
+
+
+def free(task: Task, state: State) -> bool:
+    """Where there is something to choose."""
+    return len(state.query.samples) > 1 and not locked(task.problem.rig)
+
+
+def free_and_short(task: Task, state: State) -> bool:
+    """Where a wide search does not take too long, too."""
+    time = task.problem.time
+    return free(task, state) and bool(time[-1] - time[0] <= WIDE_SECONDS)
+
+
+def coarse(task: Task, state: State) -> bool:
+    """Where the grid is not the fine one yet."""
+    return state.query.grid > task.problem.options.fine_grid
+
+
+def fine(task: Task, state: State) -> bool:
+    """Where it is."""
+    return not coarse(task, state)
+
+
+def best_effort(task: Task, _state: State) -> bool:
+    """Where time is spent on flights that seem infeasible."""
+    return task.problem.options.best_effort
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One row: where it counts among `PlanOptions.alternatives`, what it is called, when it applies, what it does."""
+
+    number: int
+    name: str
+    applies: Callable[[Task, State], bool]
+    step: Step
+
+
+ATTEMPTS = (
+    Attempt(0, "cheapest node path", always, along(kept)),
+    Attempt(1, "straight through the singularity", always, along(straight)),
+    Attempt(2, "beside the step method", always, beside(lambda fallback: (fallback.exact,))),
+    Attempt(2, "beam search", free, along(searching(0))),
+    Attempt(3, "wider beam search", free_and_short, along(searching(1))),
+    Attempt(4, "wider beam search, accelerations dearer", free_and_short, along(searching(2))),
+    Attempt(5, "away from the places that failed", always, along(away)),
+    Attempt(6, "finer grid and stages", coarse, along(finer)),
+    Attempt(6, "farther away", fine, along(away)),
+    Attempt(7, "singularity dearer", always, along(dearer)),
+)
+FARTHER = Attempt(8, "ever farther away", always, along(away))  # and all after it
+LAST = Attempt(0, "beside previews that know much of the flight", best_effort, beside(lambda f: f.foreseen))
+
+
+def attempts(alternatives: int) -> Iterator[Attempt]:
+    """The rows in turn, as far as the options go."""
+    yield from (attempt for attempt in ATTEMPTS if attempt.number <= alternatives)
+    for number in range(FARTHER.number, alternatives + 1):
+        yield replace(FARTHER, number=number)
+    yield LAST
+
+
+def search(task: Task, state: State) -> State:
+    """The state after the first attempt that finds a path inside every limit, or after the last."""
+    for attempt in attempts(task.problem.options.alternatives):
+        if attempt.applies(task, state):
+            state = attempt.step(task, state)
+        if state.flown is not None:
+            break
+    return state
+
+
+# What they share
+
+
+def refined(task: Task, angles: Array) -> Path:
+    """The path next to exact angles (n, 4) [rad], which are overwritten."""
+    return refine_path(task.problem, angles, task.told(0.5, 0.5))
+
+
+def flown_beside(task: Task, angles: Array) -> Path | None:
+    """A path inside every limit next to angles (n, 4) [rad], or those; None where they are not exact and inside."""
+    problem = task.problem
+    limits = rig_limits(problem.rig)
+    error, _ = attitude_errors(payload_attitudes(problem.rig, angles), problem.attitude)
+    if error.max() > EXACT_ERROR or largest_violation(problem.time, angles, limits).share > MET:
+        return None
+    path = refined(task, angles.copy())
+    if largest_violation(problem.time, path.angles, limits).share <= MET:
+        return path
+    return Path(angles.copy(), (), np.zeros(len(angles), np.int32))
+
+
+def how_far(problem: Problem, path: Path) -> float:
+    """How far a path is outside the limits, as a share, or from the start rate asked for, whichever is more."""
+    violation = largest_violation(problem.time, path.angles, rig_limits(problem.rig)).share
+    missed = 0.0
+    if problem.start_rate is not None:
+        missed = missed_rate(problem.time, path.angles, problem.rig, problem.start_rate)
+    return max(violation, missed - RATE_MET)
+
+
+def _around(problem: Problem, path: Path) -> Iterator[Avoid]:
+    """The places where a path failed, to be dear to the node paths to come."""
+    reach = max(AVOID_TIME, problem.options.stage)
+    for failure in path.failures:
+        first = float(problem.time[failure.sample]) - reach
+        part = slice(*np.searchsorted(problem.time, (first, first + 2.0 * reach)))
+        yield Avoid(problem.time[part], path.angles[part].copy(), AVOID_RADIUS, AVOID_COST)

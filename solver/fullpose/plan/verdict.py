@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fullpose._typing import Array, Integers
+from fullpose.kinematics import singularity_measures
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Blocking
 from fullpose.verify import Violation, attitude_errors, differences, payload_attitudes, verify
@@ -16,6 +17,30 @@ STENCIL = 4  # samples that a cubic goes through
 SPARSE = math.radians(0.01)  # [rad] of attitude half-way between samples, above which they are called too sparse
 OVERSHOOT = 1e-3  # share of a rate or acceleration limit that a cubic goes over it where the samples are on it
 CLEAR = math.radians(1e-3)  # [rad] likewise, of a position limit
+
+
+STATEMENTS = {
+    Decision.CHECKED: "Feasible: every sample checked by code apart from the planner.",
+    Decision.POSITION: (
+        "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
+        "no path of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
+        "Grid-complete away from the singularity, not a theorem."
+    ),
+    Decision.RATE: (
+        "Infeasible: no path of nodes obeys the rate limits past the blocking time, even with every edge widened "
+        "by the grid's covering step. Grid-complete away from the singularity, not a theorem."
+    ),
+    Decision.ACCELERATION: (
+        "Infeasible as far as the search went: node paths inside the rate limits exist, but none of those "
+        "refined came inside every limit, with or without regard to the accelerations; "
+        "the blocking place is the worst of the best one. Evidence, not a proof."
+    ),
+    Decision.START_RATE: (
+        "Infeasible with the start rate asked for: no path was found that takes it up inside the limits; the "
+        "blocking frame is the one it fails by. Evidence, not a proof."
+    ),
+    Decision.THREE_AXIS: "Infeasible: a three-axis rig has no freedom but the choice of the Euler set and its turns.",
+}
 
 
 @dataclass(frozen=True)
@@ -36,7 +61,7 @@ class Margins:
     """The smallest distance to each limit, (4, 2) a kind: value and time [s]; inf and nan where there is no limit.
 
     Positions [rad], rates [rad/s], accelerations [rad/s^2]; negative outside. `singularity` is (value, time) of the
-    smallest sin^2 d2 + cos^2 d3.
+    smallest `singularity_measure`.
     """
 
     position: Array
@@ -53,7 +78,7 @@ def margins(time: Array, angles: Array, rig: Rig) -> Margins:
     for begin in range(0, n, CHUNK):
         part = slice(begin, min(n, begin + CHUNK + 2))
         t, x = time[part], angles[part]
-        measure = np.sin(x[:, 1]) ** 2 + np.cos(x[:, 2]) ** 2
+        measure = singularity_measures(x)
         k = int(np.argmin(measure))
         if rig.geometry.redundant and measure[k] < nearest[0]:
             nearest = (float(measure[k]), float(t[k]))
@@ -78,13 +103,13 @@ class Between:
     """Half-way between samples: angles and attitude interpolated by cubics through four samples, in real time.
 
     `matrix` is the largest entry of F - C, `angle` [rad] the same as an angle, nan for a flight of fewer samples.
-    `excess` is how far beyond a limit the cubics go at most ([rad], or a share of a rate or acceleration limit; 0
+    `violation` is how far beyond a limit the cubics go at most ([rad], or a share of a rate or acceleration limit; 0
     inside), `frame` and `limit` (indices of `FRAMES`, `LIMITS`) whose.
     """
 
     matrix: float = math.nan
     angle: float = math.nan
-    excess: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    violation: tuple[float, float, float] = (0.0, 0.0, 0.0)
     frame: tuple[int, int, int] = (0, 0, 0)
 
     def sentence(self) -> str:
@@ -98,13 +123,13 @@ class Between:
             )
         else:
             text = f"Half-way between samples the attitude differs by at most {math.degrees(self.angle):.1e} deg"
-        over = [
+        passed = [
             f"the {FRAMES[frame]} frame's {LIMITS[kind]} limit is passed by "
-            + (f"{math.degrees(excess):.2g} deg" if kind == 0 else f"{100.0 * excess:.2g} %")
-            for kind, (excess, frame) in enumerate(zip(self.excess, self.frame, strict=True))
-            if excess > (OVERSHOOT if kind else CLEAR)
+            + (f"{math.degrees(violation):.2g} deg" if kind == 0 else f"{100.0 * violation:.2g} %")
+            for kind, (violation, frame) in enumerate(zip(self.violation, self.frame, strict=True))
+            if violation > (OVERSHOOT if kind else CLEAR)
         ]
-        return f"{text}; {', '.join(over) if over else 'the limits hold'} (by cubics through {STENCIL} samples)."
+        return f"{text}; {', '.join(passed) if passed else 'the limits hold'} (by cubics through {STENCIL} samples)."
 
 
 @dataclass(frozen=True)
@@ -132,13 +157,26 @@ def check(time: Array, attitude: Array, angles: Array, rig: Rig) -> Check:
     return Check(error, matrix_error, tuple(violations), between_samples(time, attitude, angles, rig))
 
 
+def verdict_on(found: Check, rig: Rig, blocking: Blocking | None, decided_by: Decision, grid: float) -> Verdict:
+    """The verdict on a flight that was checked: what the planner found to close its way, or else what the check did."""
+    if blocking is None and found.violations:
+        first = found.violations[0]
+        blocking = Blocking(first.time, first.frame, first.limit)
+        decided_by = Decision.ACCELERATION if rig.geometry.redundant else Decision.THREE_AXIS
+    between = found.between
+    statement = STATEMENTS[decided_by]
+    if blocking is None:
+        statement = f"{statement} {between.sentence()}"
+    return Verdict(blocking is None, blocking, decided_by, grid, statement, between.matrix, between.angle)
+
+
 def between_samples(time: Array, attitude: Array, angles: Array, rig: Rig) -> Between:
     """Every interval of a flight looked at in its middle: time (n,) [s], attitude (n, 3, 3), angles (n, 4) [rad]."""
     n = len(time)
     if n < STENCIL:
         return Between()
     matrix, angle = 0.0, 0.0
-    excess, whose = np.zeros(3), np.zeros(3, int)
+    violation, whose = np.zeros(3), np.zeros(3, int)
     for begin in range(0, n - 1, CHUNK):
         interval = np.arange(begin, min(n - 1, begin + CHUNK))
         first = np.clip(interval - 1, 0, n - STENCIL)  # of the four samples; at the ends of the flight, to one side
@@ -154,11 +192,11 @@ def between_samples(time: Array, attitude: Array, angles: Array, rig: Rig) -> Be
         for kind, values in enumerate(beyond):
             most = values[:, rig.geometry.frames].max(axis=0)
             i = int(np.argmax(most))
-            if most[i] > excess[kind]:
-                excess[kind], whose[kind] = most[i], rig.geometry.frames[i]
-    position, rate_over, acceleration_over = excess.tolist()
+            if most[i] > violation[kind]:
+                violation[kind], whose[kind] = most[i], rig.geometry.frames[i]
+    beyond_position, beyond_rate, beyond_acceleration = violation.tolist()
     frames = int(whose[0]), int(whose[1]), int(whose[2])
-    return Between(matrix, angle, (position, rate_over, acceleration_over), frames)
+    return Between(matrix, angle, (beyond_position, beyond_rate, beyond_acceleration), frames)
 
 
 def _cubic_weights(time: Array, at: Array) -> tuple[Array, Array, Array]:

@@ -21,7 +21,8 @@ from fullpose.rig import Rig
 from fullpose.trajectory.beam_search import Stages, Start, search
 from fullpose.trajectory.curve import closest_all
 from fullpose.trajectory.options import PlanOptions
-from fullpose.trajectory.sqp import refine
+from fullpose.trajectory.problem import Problem
+from fullpose.trajectory.sqp import Boundary, refine
 from fullpose.trajectory.stage_cost import Costs
 
 START_BEAM = 1000  # states kept a stage then: the way begins anywhere
@@ -77,10 +78,8 @@ class Replan:
         attitudes_ahead(self.known_time, self.known_attitude, time, FIT_WINDOW, o.settling_s, 0.5 * o.stage_s, attitude)
         d = pose.copy()
         closest_all(self.tight.axes, self.tight.geometry.horizontal, attitude, d)
-        return refine(
-            time, attitude, d, self.tight, PlanOptions(knot=0.5 * o.stage_s), start=True, start_rate=rate,
-            pinned=(False, True), iterations=o.smoothing,
-        ).angles  # fmt: skip
+        problem = Problem(time, attitude, self.tight, PlanOptions(knot=0.5 * o.stage_s, iterations=o.smoothing))
+        return refine(problem, d, Boundary(pinned=(False, True), start=True, start_rate=rate)).angles
 
     def stages(self) -> tuple[Array, Array, int, int]:
         """(time (k,) [s], exact pose (k, 4) [rad], stages whose attitude is known, the first one over a limit or k)."""

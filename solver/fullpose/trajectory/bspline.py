@@ -4,7 +4,7 @@ A uniform cubic B-spline, twice differentiable, with knots no closer than the sa
 samples themselves. Knots count samples, not seconds, so that neighbouring samples always share functions.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,8 +14,7 @@ WIDTH = 4  # functions that are not zero at one sample
 FEW = 12  # samples, below which they are the unknowns themselves
 
 
-@dataclass(frozen=True)
-class Basis:
+class Basis(NamedTuple):
     """`size` functions; at sample k those from first[k] on have values[k]. The first and last PINNED of them carry the
     value and the first two derivatives at the ends."""
 

@@ -1,58 +1,129 @@
 """The limits that a refinement keeps to, and their rows in its quadratic programme (mathematics, section 8)."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fullpose._typing import Array, Flags, Integers
-from fullpose.rig import Rig
+from fullpose._typing import Array
+from fullpose.bounds import LOWER, RATE, UPPER
+from fullpose.rig import FRAMES, LIMITS, Rig
+from fullpose.solution import Blocking
 from fullpose.trajectory.bspline import Basis
-from fullpose.trajectory.linearisation import ROW, limit_rows
+from fullpose.trajectory.linearisation import (
+    ROW,
+    Iterate,
+    Limits,
+    Reach,
+    Row,
+    Rows,
+    difference,
+    fill_row,
+    limit_rows,
+    limit_violations,
+)
 
-NEAR = 0.6  # share of a limit from which its rows are in the programme at once
+CHUNK = 1 << 17  # samples looked at together
+CLEAR = 1e-5  # [rad] that positions keep from their ends where a reserve is kept; a tenth of a narrow range
+ROOM = 0.8  # of v^2 / a: the way that a lead needs between rest and rate v
+SHORTEST = 3.0  # samples: a lead has four at least, of half the rate on average, and the rate it starts from may rise
+LEAD_UNIT = 0.005  # [rad] short of that room counts as much as the whole of a rate limit
+TANGENTS = np.linspace(0.2, 1.0, 5)  # shares of the rate limit at which v^2 / a is linearised
 
 
-@dataclass(frozen=True)
-class Limits:
-    """The limits a refinement keeps to, arrays (4,): a rig's, less the reserve."""
+class LimitViolation(NamedTuple):
+    """How far outside the limits the worst sample of a path is, as a share of the limit (<= 0: inside), and where."""
 
-    low: Array
-    high: Array
-    rate: Array
-    acceleration: Array
+    share: float
+    sample: int
+    frame: int
+    limit: int
+
+    def blocking(self, time: Array) -> Blocking:
+        """It as what closed the way; time (n,) [s] of the path."""
+        return Blocking(float(time[self.sample]), FRAMES[self.frame], LIMITS[self.limit])
 
 
 def rig_limits(rig: Rig, reserve: float = 0.0) -> Limits:
-    """The rig's limits with `reserve` (a share of them) unused; positions keep 1e-5 rad clear of their ends at most."""
+    """The rig's limits with `reserve` (a share of them) unused; positions keep `CLEAR` of their ends at most."""
     span = rig.position_max - rig.position_min
-    clear = np.minimum(1e-5, 0.1 * span) if reserve > 0.0 else 0.0
+    clear = np.minimum(CLEAR, 0.1 * span) if reserve > 0.0 else 0.0
     return Limits(
         rig.position_min + clear, rig.position_max - clear,
         rig.max_rate * (1.0 - reserve), rig.max_acceleration * (1.0 - reserve),
     )  # fmt: skip
 
 
-class Rows(NamedTuple):
-    """Rows of a quadratic programme, row c <= bound: see `linearisation.limit_rows`."""
+def largest_violation(time: Array, angles: Array, limits: Limits, last: int | None = None) -> LimitViolation:
+    """The worst of the first `last` samples of angles (n, 4) [rad] at time (n,) [s]."""
+    n = len(time) if last is None else min(last, len(time))
+    largest = LimitViolation(-np.inf, 0, 0, 0)
+    for begin in range(0, n, CHUNK):
+        end = min(n, begin + CHUNK)
+        part = slice(max(0, begin - 1), end + 1)
+        violations, frame = exceeded(time[part], angles[part], limits)
+        own = violations[begin - part.start : end - part.start]
+        k, kind = np.unravel_index(np.argmax(own), own.shape)
+        if own[k, kind] > largest.share:
+            whose = int(frame[begin - part.start + k, kind])
+            largest = LimitViolation(float(own[k, kind]), begin + int(k), whose, int(kind))
+    return largest
 
-    origin: Integers  # (r,)
-    rows: Array  # (r, ROW)
-    bound: Array  # (r,)
-    tag: Integers  # (r,)
+
+def exceeded(time: Array, angles: Array, limits: Limits) -> tuple[Array, NDArray[np.int8]]:
+    """`limit_violations` of a path (n, 4) [rad]: how far outside each sample is (n, 3), and whose limit (n, 3)."""
+    violations, frame = np.empty((len(time), 3)), np.empty((len(time), 3), np.int8)
+    limit_violations(time, angles, limits, violations, frame)
+    return violations, frame
 
 
-def rows_within_reach(
-    time: Array, d: Array, n: Array, limits: Limits, basis: Basis, stride: int, flags: Flags, trust: float
-) -> Rows:
-    """The rows of limits that may matter to a step from d (m, 4) [rad] along n (m, 4), as many as there are."""
-    room = 1024
+def rows_within_reach(at: Iterate, basis: Basis, limits: Limits, reach: Reach) -> Rows:
+    """The rows of limits that may matter to a step, as many as there are."""
+    size = 1024
     while True:
-        out = Rows(np.empty(room, np.int64), np.empty((room, ROW)), np.empty(room), np.empty(room, np.int64))
-        count = limit_rows(
-            time, d, n, basis.first, basis.values, stride, flags, trust, limits.low, limits.high,
-            limits.rate, limits.acceleration, NEAR, *out,
-        )  # fmt: skip
-        if count <= room:
-            return Rows(out.origin[:count], out.rows[:count], out.bound[:count], out.tag[:count])
-        room = count
+        rows = Rows(np.empty(size, np.int64), np.empty((size, ROW)), np.empty(size), np.empty((size, 3), np.int64))
+        count = limit_rows(at, basis, limits, reach, rows)
+        if count <= size:
+            return Rows(rows.origin[:count], rows.rows[:count], rows.room[:count], rows.bound[:count])
+        size = count
+
+
+def lead_cuts(at: Iterate, basis: Basis, limits: Limits, ends: tuple[bool, bool]) -> list[Row]:
+    """Rows c <= value that leave room for the leads: ROOM v^2 / a between rest and rate v, by its tangents, and a few
+    samples' way."""
+    if len(at.time) < 3:
+        return []
+    frames = np.flatnonzero(np.isfinite(limits.high)).tolist()
+    return [
+        cut for at_end in (False, True) if ends[at_end] for i in frames
+        for cut in _frame_cuts(at, basis, limits, at_end, i)
+    ]  # fmt: skip
+
+
+def _frame_cuts(at: Iterate, basis: Basis, limits: Limits, at_end: bool, i: int) -> list[Row]:
+    """The `lead_cuts` of frame i at one end of the path."""
+    time, d, n = at
+    count = len(time)
+    k, first = (count - 1, count - 2) if at_end else (0, 0)
+    origin = int(basis.first[first])
+    shift = int(basis.first[k]) - origin
+    h = time[first + 1] - time[first]
+    rate_row, here = np.zeros(ROW), np.zeros(ROW)
+    fill_row(RATE, first + 1, i, at, basis, rate_row)
+    here[shift : shift + basis.values.shape[1]] = n[k, i] * basis.values[k]
+    rate = difference(RATE, first + 1, i, time, d)
+    a = limits.acceleration[i]
+    fastest = limits.rate[i] if np.isfinite(limits.rate[i]) else max(abs(rate), 1.0)
+    # Without an acceleration limit the samples' way is all: one row.
+    speeds = np.r_[TANGENTS * fastest, abs(rate)] if np.isfinite(a) else np.zeros(1)
+    cuts = []
+    for side in (UPPER, LOWER):  # the end of the range that the frame runs to after the end, or came from before
+        sign = 1.0 if side == UPPER else -1.0
+        room = limits.high[i] - d[k, i] if side == UPPER else d[k, i] - limits.low[i]
+        toward = sign if at_end else -sign
+        for v in speeds:
+            slope = 2.0 * ROOM * v / a + SHORTEST * h
+            row = sign * here + toward * slope * rate_row
+            value = room - slope * toward * rate + ROOM / a * v * v
+            cuts.append(Row(origin, row / LEAD_UNIT, value / LEAD_UNIT))
+    return cuts

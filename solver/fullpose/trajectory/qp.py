@@ -1,65 +1,60 @@
-"""One quadratic programme of the refinement: built here, solved by PIQP (docs/decisions/0005-planner.md).
+"""One quadratic programme of a refinement, the matrices that a solver takes, and what it answers.
 
-Unknowns: the coefficients c of the displacement, and one slack a bin of the path, dear enough to be zero wherever the
+Unknowns: the coefficients c of the displacement, and one slack a group of rows, dear enough to be zero wherever the
 limits can be met at all, so that an infeasible programme still says where it fails.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from enum import Enum, auto
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-import piqp
 from scipy import sparse
 
 from fullpose._typing import Array, Integers
 from fullpose.trajectory.bspline import PINNED
-from fullpose.trajectory.linearisation import ROW
+from fullpose.trajectory.cost import QuadraticModel
+from fullpose.trajectory.linearisation import ROW, Row
 
-SLACK_COST = 100.0  # per whole limit and bin; the rest of the cost is of the order of one a second
-TOLERANCE = 1e-7
+SLACK_COST = 100.0  # per whole limit and group; the rest of the cost is of the order of one a second
+SLACK_CURVATURE = 1e-3  # makes the slacks unique
 Matrix = Any  # a SciPy sparse matrix, compressed columns
 
 
-@dataclass(frozen=True)
-class Equality:
-    """row c = value, over the ROW coefficients from `origin` on, of one frame where all are free."""
+class Status(Enum):
+    """How a solver ended. What it stopped at is a step all the same, unless it failed: the merit decides on it."""
 
-    origin: int
-    row: Array
-    value: float
-    frame: int = 0
+    SOLVED = auto()  # to its tolerance
+    INEXACT = auto()  # stopped before
+    INFEASIBLE = auto()  # it found that no point satisfies the rows, or that the cost has no least value
+    FAILED = auto()  # no numbers, or none that are finite
 
 
 @dataclass(frozen=True)
 class QuadraticProgramme:
-    """min 1/2 c'Hc + g'c + slack, s.t. rows c - slack <= bound, |c| <= trust, pinned ends zero, equalities.
+    """min 1/2 c'Hc + g'c + slack, s.t. rows c - slack <= room, |c| <= trust, pinned ends zero, equalities.
 
     `every` = 1: the unknowns are the displacement's coefficients; 4: those of all four frames, frame fastest.
     """
 
-    bands: Array  # (size, band) H[j, j + b]
-    gradient: Array  # (size,)
+    model: QuadraticModel  # H (size, band) H[j, j + b], g (size,)
     origin: Integers  # (r,)
     rows: Array  # (r, ROW)
-    bound: Array  # (r,)
-    frame: Integers  # (r,)
+    room: Array  # (r,)
     group: Integers  # (r,) rows of one group share a slack
     trust: float
     pinned: tuple[bool, bool]
-    equalities: tuple[Equality, ...] = ()
+    frame: Integers  # (r,) of the rows, where all frames are free; else 0
+    equalities: tuple[Row, ...] = ()
     every: int = 1
     slack_cost: float = SLACK_COST
 
-
-@dataclass(frozen=True)
-class Answer:
-    """Coefficients (size,), slack (bins,), multipliers of the rows (r,), whether the solver came to its tolerance."""
-
-    coefficients: Array
-    slack: Array
-    multipliers: Array
-    solved: bool
-    iterations: int
+    @property
+    def free(self) -> tuple[int, int]:
+        """(begin, end) of the coefficients that are not pinned, half-open."""
+        fixed = PINNED * self.every
+        return fixed if self.pinned[0] else 0, len(self.model.g) - (fixed if self.pinned[1] else 0)
 
 
 @dataclass(frozen=True)
@@ -69,79 +64,95 @@ class Matrices:
     P: Matrix
     q: Array
     G: Matrix
-    h: Array
+    h: Array  # inf: no constraint
     A: Matrix | None
     b: Array | None
     lower: Array
     upper: Array
 
+    def numbers(self) -> Iterator[Array]:
+        """All that must be finite."""
+        yield from (self.P.data, self.q, self.G.data, self.h[self.h < np.inf])
+        if self.A is not None and self.b is not None:
+            yield from (self.A.data, self.b)
+
+
+class Minimiser(NamedTuple):
+    """x, and how good it is."""
+
+    x: Array
+    status: Status
+
+
+class Solver(Protocol):
+    """Solves a programme; quiet whatever happens, and not the one to decide what a failure means."""
+
+    def __call__(self, given: Matrices) -> Minimiser:
+        """The minimiser (len(q),) of the programme."""
+        ...
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Coefficients (size,), zero where the solver failed; the slack of each group of rows; how the solver ended."""
+
+    coefficients: Array
+    slack: Array
+    status: Status
+
 
 def matrices(problem: QuadraticProgramme) -> Matrices:
     """The programme as the solvers take it."""
-    m, width = problem.bands.shape
-    every = problem.every
+    H = problem.model.H
+    m, width = H.shape
     r = len(problem.origin)
-    bins, bin_of_row = np.unique(problem.group, return_inverse=True) if r else (np.empty(0, int), np.empty(0, int))
-    s = len(bins)
-    diagonals = [problem.bands[: m - b, b] for b in range(min(width, m))]
+    groups, group_of_row = np.unique(problem.group, return_inverse=True) if r else (np.empty(0, int), np.empty(0, int))
+    s = len(groups)
+    diagonals = [H[: m - b, b] for b in range(min(width, m))]
     upper_part: Matrix = sparse.diags(diagonals, list(range(len(diagonals))), shape=(m, m))
     hessian = upper_part + sparse.triu(upper_part, 1).T
-    P: Matrix = sparse.block_diag([hessian, sparse.identity(s) * 1e-3], format="csc")
-    q = np.concatenate([problem.gradient, np.full(s, problem.slack_cost)])
-    column = (problem.origin[:, None] + np.arange(ROW)) * every + (problem.frame[:, None] if every > 1 else 0)
+    P: Matrix = sparse.block_diag([hessian, sparse.identity(s) * SLACK_CURVATURE], format="csc")
+    q = np.concatenate([problem.model.g, np.full(s, problem.slack_cost)])
+    column = (problem.origin[:, None] + np.arange(ROW)) * problem.every + problem.frame[:, None]
     kept = problem.rows != 0.0
     row_number = np.repeat(np.arange(r), kept.sum(axis=1))
     G: Matrix = sparse.csc_matrix(
         (
             np.concatenate([problem.rows[kept], np.full(r, -1.0)]),
-            (np.concatenate([row_number, np.arange(r)]), np.concatenate([column[kept], m + bin_of_row])),
+            (np.concatenate([row_number, np.arange(r)]), np.concatenate([column[kept], m + group_of_row])),
         ),
         shape=(r, m + s),
     )
-    A: Matrix | None = None
-    b: Array | None = None
-    if problem.equalities:
-        dense = np.zeros((len(problem.equalities), m + s))
-        for k, equality in enumerate(problem.equalities):
-            for a in np.flatnonzero(equality.row):
-                dense[k, (equality.origin + a) * every + (equality.frame if every > 1 else 0)] = equality.row[a]
-        A = sparse.csc_matrix(dense)
-        b = np.array([equality.value for equality in problem.equalities])
+    A, b = _equalities(problem, m + s)
     lower = np.concatenate([np.full(m, -problem.trust), np.zeros(s)])
     upper = np.concatenate([np.full(m, problem.trust), np.full(s, np.inf)])
+    begin, end = problem.free
     keep = np.ones(m + s, bool)
-    fixed = PINNED * every
-    keep[:fixed] = not problem.pinned[0]
-    if problem.pinned[1]:
-        keep[max(0, m - fixed) : m] = False
+    keep[:begin] = False
+    keep[max(0, end) : m] = False
     if not keep.all():
         P, G = P[keep][:, keep], G[:, keep]
         A = A[:, keep] if A is not None else None
         q, lower, upper = q[keep], lower[keep], upper[keep]
-    return Matrices(P.tocsc(), q, G.tocsc(), problem.bound, A, b, lower, upper)
+    return Matrices(P.tocsc(), q, G.tocsc(), problem.room, A, b, lower, upper)
 
 
-def solve_programme(problem: QuadraticProgramme) -> Answer:
-    """The minimiser, by PIQP's interior-point method."""
-    m = len(problem.gradient)
-    given = matrices(problem)
-    solver = piqp.SparseSolver()
-    solver.settings.eps_abs = TOLERANCE
-    solver.settings.eps_rel = TOLERANCE
-    solver.settings.max_iter = 100
-    solver.setup(given.P, given.q, given.A, given.b, given.G, None, given.h, given.lower, given.upper)
-    status = solver.solve()
-    x = np.asarray(solver.result.x)
-    fixed = PINNED * problem.every
-    skipped = (fixed if problem.pinned[0] else 0, fixed if problem.pinned[1] else 0)
-    free = m - sum(skipped)
-    coefficients = np.zeros(m)
-    coefficients[skipped[0] : m - skipped[1]] = x[:free]
-    usable = bool(np.isfinite(x).all())
-    return Answer(
-        coefficients=coefficients if usable else np.zeros(m),
-        slack=x[free:],
-        multipliers=np.asarray(solver.result.z_u),
-        solved=usable and status == piqp.PIQP_SOLVED,
-        iterations=int(solver.result.info.iter),
-    )
+def _equalities(problem: QuadraticProgramme, size: int) -> tuple[Matrix | None, Array | None]:
+    """(A, b) of the equalities over `size` unknowns."""
+    if not problem.equalities:
+        return None, None
+    dense = np.zeros((len(problem.equalities), size))
+    for k, each in enumerate(problem.equalities):
+        for a in np.flatnonzero(each.row):
+            dense[k, (each.origin + a) * problem.every + each.frame] = each.row[a]
+    return sparse.csc_matrix(dense), np.array([each.value for each in problem.equalities])
+
+
+def solve_programme(problem: QuadraticProgramme, solver: Solver) -> Answer:
+    """The minimiser of a programme, in its own unknowns."""
+    x, status = solver(matrices(problem))
+    begin, end = problem.free
+    coefficients = np.zeros(len(problem.model.g))
+    if status is not Status.FAILED:
+        coefficients[begin:end] = x[: end - begin]
+    return Answer(coefficients, x[end - begin :], status)

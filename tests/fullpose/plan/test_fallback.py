@@ -7,11 +7,12 @@ import pytest
 
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.plan import PlanOptions, plan
-from fullpose.plan.fallback import Fallback
-from fullpose.plan.strategies import Search
+from fullpose.plan.fallback import FORESIGHTS, Fallback
+from fullpose.plan.strategies import Task, flown_beside
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.solve import solve
+from fullpose.trajectory.problem import Problem
 from fullpose.verify import attitude_errors, payload_attitudes, verify
 from tests.support.flights import example_flight
 
@@ -58,7 +59,7 @@ def test_what_the_step_method_flies_is_planned(seed: int) -> None:
 
 
 def test_a_real_roll_with_a_slow_inner_frame_is_planned() -> None:
-    """The node paths turn this roll over the inner frame; by the step method's way it need not turn."""
+    """The node paths turn this roll over the inner frame; beside the step method's path it need not turn."""
     t, q = example_flight("slow_roll")
     time, attitude = t[::4], dcm_from_quaternion(q[::4])
     free = FrameLimits()
@@ -68,24 +69,36 @@ def test_a_real_roll_with_a_slow_inner_frame_is_planned() -> None:
     assert flown(time, attitude, made.solution.angles, rig)
 
 
-def test_the_ways_are_inside_the_limits_and_made_once() -> None:
+def test_the_paths_are_inside_the_limits_and_made_once() -> None:
     rig = builtin_rigs()["vertical-limited"]
     time, attitude = tumble(3, 150.0)
-    fallback = Fallback(time, attitude, rig, None)
-    for way in (fallback.exact(), *fallback.foreseen()):
-        assert not verify(time, way, rig, attitude).violations
-    assert fallback.exact() is fallback.exact()
-    assert fallback.foreseen() is fallback.foreseen()
+    fallback = Fallback(Problem(time, attitude, rig))
+    paths = (fallback.exact, *fallback.foreseen)
+    assert len(paths) == 1 + len(FORESIGHTS)
+    for path in paths:
+        assert not verify(time, path, rig, attitude).violations
+    assert fallback.exact is paths[0]
+    assert all(again is path for again, path in zip(fallback.foreseen, paths[1:], strict=True))
+
+
+def test_the_closest_is_a_copy_of_the_one_that_misses_least() -> None:
+    rig = builtin_rigs()["vertical-limited"]
+    time, attitude = tumble(3, 200.0)
+    fallback = Fallback(Problem(time, attitude, rig))
+    paths = (fallback.exact, *fallback.foreseen)
+    missed = [np.mean(attitude_errors(payload_attitudes(rig, path), attitude)[0] ** 2) for path in paths]
     closest = fallback.closest()
-    assert not any(closest is way for way in (fallback.exact(), *fallback.foreseen()))
+    assert np.array_equal(closest, paths[int(np.argmin(missed))])
+    assert not any(np.shares_memory(closest, path) for path in paths)
 
 
-def test_a_way_that_misses_the_attitude_is_none() -> None:
+def test_a_path_that_misses_the_attitude_is_none() -> None:
     rig = some_limits(23)
     time, attitude = tumble(23, 12.0)
-    search = Search(time, attitude, rig, None, None, PlanOptions(), None)
-    way = search.fallback.exact()
-    assert search.refine_step(way) is not None
-    off = way.copy()
+    problem = Problem(time, attitude, rig)
+    task = Task(problem, Fallback(problem))
+    path = task.fallback.exact
+    assert flown_beside(task, path) is not None
+    off = path.copy()
     off[150:] += 1e-6
-    assert search.refine_step(off) is None
+    assert flown_beside(task, off) is None

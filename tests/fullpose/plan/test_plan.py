@@ -18,6 +18,7 @@ from fullpose.scenarios import random_flight
 from fullpose.solve import solve
 from fullpose.trajectory.curve import null_vectors
 from fullpose.verify import verify
+from fullpose.vocabulary import Decision
 
 DEG = np.pi / 180.0
 RIGS = builtin_rigs()
@@ -100,7 +101,7 @@ def test_a_start_rate_that_cannot_be_kept_is_not_feasible():
     assert plan(t, C, rig, start=at).verdict.feasible
     assert not made.verdict.feasible
     assert made.verdict.blocking is not None
-    assert made.verdict.decided_by != "position"
+    assert made.verdict.decided_by == Decision.START_RATE
 
 
 @pytest.mark.parametrize(
@@ -124,8 +125,10 @@ def test_progress_rises_and_cancels():
     t, C = flight(duration=8.0)
     told = []
     plan(t, C, LIMITED, progress=lambda done, total: told.append((done, total)))
-    assert told
-    assert all(0 <= done <= total == len(t) for done, total in told)
+    assert len(told) > 2
+    assert all(0 <= done < total == len(t) for done, total in told)
+    assert [done for done, _ in told] == sorted(done for done, _ in told)  # one node path, refined: no way back
+    assert told[-1][0] == len(t) - 1
 
     def stop(done, total):
         raise CancelledError("enough")

@@ -54,11 +54,11 @@ def test_the_limits_between_samples_are_those_of_the_cubics(kind):
     value[kind] = 0.8 * truth
     rig = Rig("one", Geometry.VERTICAL_4, (FrameLimits(-value[0], value[0], *value[1:]), *[FrameLimits()] * 3))
     found = between_samples(t, payload_attitudes(rig, x), x, rig)
-    assert found.excess[kind] == pytest.approx(0.2 * truth if kind == 0 else 0.25, rel=1e-6)
+    assert found.violation[kind] == pytest.approx(0.2 * truth if kind == 0 else 0.25, rel=1e-6)
     assert found.frame[kind] == 0
     assert "base frame's" in found.sentence()
     loose = Rig("loose", Geometry.VERTICAL_4, (FrameLimits(-9.0, 9.0, 9.0, 9.0),) * 4)
-    assert between_samples(t, payload_attitudes(loose, x), x, loose).excess == (0.0, 0.0, 0.0)
+    assert between_samples(t, payload_attitudes(loose, x), x, loose).violation == (0.0, 0.0, 0.0)
 
 
 def test_an_excursion_between_samples_is_said():
@@ -68,7 +68,7 @@ def test_an_excursion_between_samples_is_said():
     x[:, 3] = np.array([0.2, 0.6, 1.0, 1.0, 0.6, 0.2, 0.0, 0.0])
     rig = Rig("stop", Geometry.VERTICAL_4, (*[FrameLimits()] * 3, FrameLimits(-1.0, 1.0)))
     found = between_samples(t, payload_attitudes(rig, x), x, rig)
-    assert found.excess[0] == pytest.approx(0.05)
+    assert found.violation[0] == pytest.approx(0.05)
     assert "inner frame's position limit is passed by 2.9 deg" in found.sentence()
 
 

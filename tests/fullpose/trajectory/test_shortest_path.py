@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
-from fullpose.plan.strategies import Search
+from fullpose.bounds import ACCELERATION, POSITION, RATE
+from fullpose.plan.node_paths import Query, cheapest
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.trajectory.nodes import lattice
 from fullpose.trajectory.options import PlanOptions
+from fullpose.trajectory.problem import Problem
 from fullpose.trajectory.shortest_path import Programme, reference_rates
 from fullpose.verify import payload_attitudes
 
@@ -56,7 +58,7 @@ def test_same_cost_as_the_search_over_all_pairs(geometry, rate, seed):
         assert node_path.cost == pytest.approx(expected, rel=1e-12)
 
 
-def test_chain_is_exact_continuous_and_within_the_rates():
+def test_a_node_path_is_exact_continuous_and_within_the_rates():
     p = programme(LIMITED, stages=100, grid=2.0, interval=0.05)
     node_path = p.run()
     assert node_path.found
@@ -65,7 +67,7 @@ def test_chain_is_exact_continuous_and_within_the_rates():
     assert (np.abs(node_path.angles[:, 3]) <= 60 * DEG).all()
 
 
-def test_pointers_computed_again_give_the_same_chain(monkeypatch):
+def test_pointers_computed_again_give_the_same_node_path(monkeypatch):
     p = programme(LIMITED, stages=200, grid=6.0, interval=0.05)
     once = p.run()
     monkeypatch.setattr("fullpose.trajectory.shortest_path.BACK_BYTES", 1)  # blocks of 64 stages
@@ -81,7 +83,7 @@ def test_the_frontier_names_the_rate_that_closed_it():
     node_path = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
     assert not node_path.found
     assert 0.5 < time[node_path.reached] < 0.8
-    assert (node_path.frame, node_path.limit) == (1, 1)
+    assert (node_path.frame, node_path.limit) == (1, RATE)
 
 
 def test_the_frontier_names_the_range_that_closed_it():
@@ -91,7 +93,7 @@ def test_the_frontier_names_the_range_that_closed_it():
     rig = Rig("narrow", Geometry.VERTICAL_4, (narrow, FrameLimits(-30 * DEG, 30 * DEG), narrow, narrow))
     node_path = Programme(time, C, rig, lattice(rig, DEG), PlanOptions()).run()
     assert not node_path.found
-    assert node_path.limit == 0
+    assert node_path.limit == POSITION
     assert 20 <= 90 * time[node_path.reached] <= 60
 
 
@@ -115,7 +117,7 @@ def test_turns_of_a_bounded_frame_are_counted():
             assert node_path.angles[:, 0].max() <= 450 * DEG + 1e-12
 
 
-def test_without_rate_limits_the_chain_is_looked_for_nearby_and_then_everywhere():
+def test_without_rate_limits_the_node_path_is_looked_for_nearby_and_then_everywhere():
     rig = Rig("free", Geometry.VERTICAL_4, (FrameLimits(),) * 4)
     p = programme(rig, stages=40, grid=4.0, interval=0.05)
     assert p.bounded
@@ -128,13 +130,13 @@ def test_without_rate_limits_the_chain_is_looked_for_nearby_and_then_everywhere(
     assert not programme(LIMITED).bounded
 
 
-def test_a_chain_that_is_missing_nearby_is_looked_for_everywhere(monkeypatch):
+def test_a_node_path_that_is_missing_nearby_is_looked_for_everywhere(monkeypatch):
     monkeypatch.setattr("fullpose.trajectory.shortest_path.LOOK", 0.0)
     monkeypatch.setattr("fullpose.trajectory.shortest_path.LOOK_CELLS", 0.0)
     p = programme(Rig("free", Geometry.VERTICAL_4, (FrameLimits(),) * 4), interval=0.05)
     assert not p.run().found
-    search = Search(p.time, p.attitude, p.rig, None, None, PlanOptions(), None)
-    assert search.node_path(p.grid.step).found
+    query = Query(np.arange(len(p.time)), np.zeros(4, np.bool_), p.grid.step)
+    assert cheapest(Problem(p.time, p.attitude, p.rig), query, None)[0].found
 
 
 def test_inertia_that_closes_the_way_is_named_as_an_acceleration():
@@ -143,7 +145,7 @@ def test_inertia_that_closes_the_way_is_named_as_an_acceleration():
     p.motion = pose, np.array([3.0, -3.0, 3.0, 3.0])
     node_path = p.run(pose)
     assert not node_path.found
-    assert node_path.limit == 2
+    assert node_path.limit == ACCELERATION
 
 
 def replace_acceleration(rig, value):

@@ -1,32 +1,36 @@
-"""Rows against finite differences, the quadratic programme against SciPy, refinement against the limits."""
+"""Rows and models against finite differences, refinement against the limits."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
 
 from fullpose.attitude import dcm_from_quaternion
+from fullpose.bounds import ACCELERATION, LOWER, POSITION, RATE, UPPER, Bound
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.trajectory.bspline import spline_basis
-from fullpose.trajectory.constraints import rig_limits
+from fullpose.trajectory.constraints import exceeded, largest_violation, lead_cuts, rig_limits, rows_within_reach
+from fullpose.trajectory.cost import Cost, QuadraticModel, cost_bands, cost_of, error_bands, path_cost
 from fullpose.trajectory.curve import null_vectors
 from fullpose.trajectory.linearisation import (
+    POSITION_UNIT,
     ROW,
-    cost_bands,
+    Iterate,
+    Reach,
+    Rows,
     difference,
     displaced,
-    error_bands,
     fill_row,
     limit_rows,
-    over_limits,
 )
 from fullpose.trajectory.nodes import lattice
 from fullpose.trajectory.options import PlanOptions
-from fullpose.trajectory.qp import QuadraticProgramme, matrices, solve_programme
+from fullpose.trajectory.problem import Problem
 from fullpose.trajectory.shortest_path import Programme
-from fullpose.trajectory.sqp import lead_cuts, refine, worst
+from fullpose.trajectory.sqp import Boundary, discretised, refine
 from fullpose.trajectory.windows import refine_path, smooth_curve, stage_samples
-from fullpose.verify import payload_attitudes, verify
+from fullpose.verify import differences, payload_attitudes, verify
 
 DEG = np.pi / 180.0
 RIG = builtin_rigs()["vertical-limited"]
@@ -34,60 +38,64 @@ RIG = builtin_rigs()["vertical-limited"]
 
 @pytest.fixture(scope="module")
 def flight():
-    """(time, attitude, an exact smooth path that is not refined)"""
+    """(the problem, an exact smooth path that is not refined)"""
     t, q = random_flight(3, 4.0, 250.0, 110 * DEG)
     C = dcm_from_quaternion(q)
     samples = stage_samples(t, 0.05)
     node_path = Programme(t[samples], C[samples], RIG, lattice(RIG, DEG), PlanOptions()).run()
-    return t, C, smooth_curve(t, C, RIG, samples, node_path, None)
+    return Problem(t, C, RIG), smooth_curve(Problem(t, C, RIG), samples, node_path)
+
+
+@pytest.fixture(scope="module")
+def at(flight):
+    """The unrefined path and its null vectors."""
+    problem, d = flight
+    n = np.empty_like(d)
+    null_vectors(False, d, n)
+    return Iterate(problem.time, d, n)
 
 
 @pytest.mark.parametrize("kind", [0, 1, 2])
-def test_rows_are_the_derivatives_of_the_differences(flight, kind):
-    t, _, d = flight
-    n = np.empty_like(d)
-    null_vectors(False, d, n)
+def test_rows_are_the_derivatives_of_the_differences(at, kind):
+    t, d, n = at
     basis = spline_basis(t, 0.025)
     row = np.empty(ROW)
     random = np.random.default_rng(1)
     for k in random.integers(1, len(t) - 1, 25):
         for i in range(4):
-            origin = fill_row(kind, int(k), i, t, n, basis.first, basis.values, row)
+            origin = fill_row(kind, int(k), i, at, basis, row)
             c = np.zeros(basis.size)
-            at = min(origin + int(random.integers(0, 4)), basis.size - 1)
-            c[at] = 1.0
+            one = min(origin + int(random.integers(0, 4)), basis.size - 1)
+            c[one] = 1.0
             moved = np.empty_like(d)
-            displaced(d, n, basis.first, basis.values, c, moved)
+            displaced(d, n, basis, c, moved)
             expected = difference(kind, int(k), i, t, moved) - difference(kind, int(k), i, t, d)
-            assert row[at - origin] == pytest.approx(expected, rel=1e-6, abs=1e-7)
+            assert row[one - origin] == pytest.approx(expected, rel=1e-6, abs=1e-7)
 
 
 def test_over_limits_agrees_with_the_independent_check(flight):
-    t, _, d = flight
-    over, whose = np.empty((len(t), 3)), np.empty((len(t), 3), np.int8)
-    limits = rig_limits(RIG)
-    over_limits(t, 3.0 * d, limits.low, limits.high, limits.rate, limits.acceleration, over, whose)
+    problem, d = flight
+    t, limits = problem.time, rig_limits(RIG)
+    violation, whose = exceeded(t, 3.0 * d, limits)
     peaks = verify(t, 3.0 * d, RIG).peaks
-    assert over[1:, 1].max() == pytest.approx((peaks[:, 1] / RIG.max_rate).max() - 1.0)
-    assert over[:, 2].max() == pytest.approx((peaks[:, 2] / RIG.max_acceleration).max() - 1.0)
-    value, sample, frame, kind = worst(t, 3.0 * d, limits)
-    assert value == over.max()
-    assert over[sample, kind] == value
+    assert violation[1:, 1].max() == pytest.approx((peaks[:, 1] / RIG.max_rate).max() - 1.0)
+    assert violation[:, 2].max() == pytest.approx((peaks[:, 2] / RIG.max_acceleration).max() - 1.0)
+    value, sample, frame, kind = largest_violation(t, 3.0 * d, limits)
+    assert value == violation.max()
+    assert violation[sample, kind] == value
     assert whose[sample, kind] == frame
 
 
-def test_cost_bands_are_the_gradient_of_the_cost(flight):
-    t, _, d = flight
-    n = np.empty_like(d)
-    null_vectors(False, d, n)
+def test_cost_bands_are_the_gradient_of_the_cost(at):
+    t, d, n = at
     basis = spline_basis(t, 0.025)
-    weights = np.ones(4), 0.01 * np.ones(4)
-    H, g = np.zeros((basis.size, ROW)), np.zeros(basis.size)
-    cost_bands(t, d, n, basis.first, basis.values, 1, *weights, np.zeros(4), 0.3, 0.05, 0.0, H, g)
+    weights = Cost(np.ones(4), 0.01 * np.ones(4), home=np.zeros(4), homing=0.3, margin=0.05, rise=0.0)
+    H, g = QuadraticModel(np.zeros((basis.size, ROW)), np.zeros(basis.size))
+    cost_bands(at, basis, 1, weights, QuadraticModel(H, g))
 
     def cost(c):
         moved = np.empty_like(d)
-        displaced(d, n, basis.first, basis.values, c, moved)
+        displaced(d, n, basis, c, moved)
         v = np.diff(moved, axis=0) / 0.004
         a = np.diff(v, axis=0) / 0.004
         dt = np.full(len(t), 0.004)
@@ -96,25 +104,27 @@ def test_cost_bands_are_the_gradient_of_the_cost(flight):
         return 0.3 * (moved**2 * dt[:, None]).sum() + (v**2 * dt[1:, None]).sum() + 0.01 * (a**2 * dt[1:-1, None]).sum()
 
     zero = np.zeros(basis.size)
-    for at in range(5, basis.size - 8, 17):
+    for j in range(5, basis.size - 8, 17):
         c = zero.copy()
-        c[at] = 1e-4
+        c[j] = 1e-4
         slope = (cost(c) - cost(-c)) / 2e-4
         bend = (cost(c) - 2 * cost(zero) + cost(-c)) / 1e-8
-        assert g[at] == pytest.approx(slope, rel=1e-5, abs=1e-6)
-        assert H[at, 0] == pytest.approx(bend, rel=1e-3)
+        assert g[j] == pytest.approx(slope, rel=1e-5, abs=1e-6)
+        assert H[j, 0] == pytest.approx(bend, rel=1e-3)
 
 
 def test_error_bands_are_the_gradient_of_the_attitude_error(flight):
-    t, C, d = flight
+    problem, d = flight
+    t, C = problem.time, problem.attitude
     random = np.random.default_rng(2)
     basis = spline_basis(t, 0.05)
     x = d + 0.05 * np.sin(np.outer(t, random.uniform(1, 3, 4)))
-    nothing = np.zeros(4)
+    nothing = Cost(np.zeros(4), np.zeros(4), np.zeros(4), 0.0, 1.0, 0.0)
 
     def total(x):
-        H, g = np.zeros((4 * basis.size, 4 * ROW)), np.zeros(4 * basis.size)
-        return error_bands(RIG.axes, t, C, x, basis.first, basis.values, 1, 1.0, nothing, nothing, H, g), g
+        model = QuadraticModel(np.zeros((4 * basis.size, 4 * ROW)), np.zeros(4 * basis.size))
+        at = Iterate(t, x, np.ones_like(x))
+        return error_bands(RIG.axes, C, at, basis, 1, 1.0, nothing, model), model.g
 
     _, g = total(x)
     for at in range(9, 4 * basis.size - 30, 41):
@@ -122,61 +132,45 @@ def test_error_bands_are_the_gradient_of_the_attitude_error(flight):
         bump = np.zeros(basis.size)
         bump[at // 4] = 1e-5
         step = np.zeros_like(x)
-        displaced(np.zeros_like(x), np.tile(np.eye(4)[frame], (len(t), 1)), basis.first, basis.values, bump, step)
+        displaced(np.zeros_like(x), np.tile(np.eye(4)[frame], (len(t), 1)), basis, bump, step)
         slope = (total(x + step)[0] - total(x - step)[0]) / 2e-5
         assert g[at] == pytest.approx(slope, rel=2e-2, abs=1e-6)  # the model leaves the error's own curvature out
 
 
-def test_programme_agrees_with_scipy():
-    random = np.random.default_rng(5)
-    basis = spline_basis(np.arange(40) * 0.01, 0.05)
-    m = basis.size
-    bands = np.zeros((m, ROW))
-    bands[:, 0], bands[:, 1] = 4.0, 1.0
-    origin = random.integers(0, m - ROW, 12)
-    rows = random.normal(size=(12, ROW))
-    problem = QuadraticProgramme(
-        bands, random.normal(size=m), origin, rows, np.full(12, 0.3), np.zeros(12, np.int64), origin, 0.5, (True, False)
-    )
-    answer = solve_programme(problem)
-    assert answer.solved
-    assert (answer.coefficients[:3] == 0.0).all()
-    given = matrices(problem)
-    P, q, G, h = given.P, given.q, given.G, given.h
-    expected = minimize(
-        lambda x: 0.5 * x @ (P @ x) + q @ x, np.zeros(len(q)), jac=lambda x: P @ x + q, method="SLSQP",
-        bounds=[(a, b if np.isfinite(b) else None) for a, b in zip(given.lower, given.upper, strict=True)],
-        constraints={"type": "ineq", "fun": lambda x: h - G @ x, "jac": lambda _: -G.toarray()},
-        options={"ftol": 1e-12},
-    )  # fmt: skip
-    x = np.r_[answer.coefficients[3:], answer.slack]
-    assert 0.5 * x @ (P @ x) + q @ x == pytest.approx(expected.fun, abs=1e-5)
-    assert np.abs(x - expected.x).max() < 1e-3
-
-
-def test_refinement_is_exact_inside_and_cheaper(flight):
-    t, C, d = flight
-    result = refine(t, C, d, RIG, PlanOptions())
-    assert result.over <= 0.0
-    found = verify(t, result.angles, RIG, C)
+def test_refinement_brings_a_path_inside_exact_and_cheaper(flight):
+    problem, d = flight
+    most = verify(problem.time, d, RIG).peaks[:, 2]  # the path goes a quarter over 0.8 of what it asks for
+    frames = tuple(replace(f, max_acceleration=0.8 * a) for f, a in zip(RIG.frames, most, strict=True))
+    problem = replace(problem, rig=replace(RIG, frames=frames))
+    t, C, rig = problem.time, problem.attitude, problem.rig
+    cost, stride = cost_of(rig, problem.options), discretised(problem).stride
+    assert largest_violation(t, d, rig_limits(rig)).share == pytest.approx(0.25)
+    result = refine(problem, d, Boundary())
+    assert result.violation.share <= 0.0
+    assert path_cost(t, result.angles, cost, stride) < 0.8 * path_cost(t, d, cost, stride)
+    found = verify(t, result.angles, rig, C)
     assert found.violations == ()
     assert found.max_matrix_error < 5e-15
 
 
 def test_windows_join_without_a_corner(flight):
-    t, C, d = flight
-    whole = refine_path(t, C, d.copy(), RIG, PlanOptions())
-    parts = refine_path(t, C, d.copy(), RIG, PlanOptions(window=1.2, overlap=0.4))
+    problem, d = flight
+    whole = refine_path(problem, d.copy())
+    parts = refine_path(replace(problem, options=PlanOptions(window=1.2, overlap=0.4)), d.copy())
+    assert np.abs(parts.angles - whole.angles).max() > 1e-3  # they are not the same
     for path in (whole, parts):
         assert path.failures == ()
-        assert verify(t, path.angles, RIG, C).violations == ()
-    assert np.abs(payload_attitudes(RIG, parts.angles) - C).max() < 5e-15
+        assert verify(problem.time, path.angles, RIG, problem.attitude).violations == ()
+    assert np.abs(payload_attitudes(RIG, parts.angles) - problem.attitude).max() < 5e-15
 
 
 def test_pinned_ends_stay(flight):
-    t, C, d = flight
-    result = refine(t, C, d, RIG, PlanOptions(), pinned=(True, True))
+    problem, d = flight
+    result = refine(problem, d, Boundary(pinned=(True, True)))
     assert np.abs(result.angles[[0, -1]] - d[[0, -1]]).max() < 1e-12
+    assert np.abs(result.angles - d).max() > 1e-3  # what is between them moved
+    free = refine(problem, d, Boundary())
+    assert np.abs(free.angles[[0, -1]] - d[[0, -1]]).max() > 1e-6  # and they would have, too
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -191,30 +185,41 @@ def test_lead_cuts_are_broken_only_where_there_is_no_way_to_brake(side, at_end):
         d[:, 3] = along + side * (stop - room)  # toward the stop at the end, away from it at the beginning
         n = np.empty_like(d)
         null_vectors(False, d, n)
-        cuts = lead_cuts(t, d, n, spline_basis(t, 0.025), rig_limits(RIG), (not at_end, at_end))
+        cuts = lead_cuts(Iterate(t, d, n), spline_basis(t, 0.025), rig_limits(RIG), (not at_end, at_end))
         assert (min(cut.value for cut in cuts) < 0.0) == broken
 
 
-def test_limit_rows_counts_what_does_not_fit(flight):
-    t, _, d = flight
-    n = np.empty_like(d)
-    null_vectors(False, d, n)
-    basis = spline_basis(t, 0.025)
-    limits = rig_limits(RIG)
+def test_limit_rows_count_what_does_not_fit_and_name_their_bounds(at):
+    t, d, n = at
+    basis, limits = spline_basis(t, 0.025), rig_limits(RIG)
+    reach = Reach(2, np.zeros((len(t), 3), np.uint8), 0.3, 0.0)
 
     def rows(room):
-        out = np.empty(room, np.int64), np.empty((room, ROW)), np.empty(room), np.empty(room, np.int64)
-        count = limit_rows(
-            t, d, n, basis.first, basis.values, 2, np.zeros((len(t), 3), np.uint8), 0.3, limits.low, limits.high,
-            limits.rate, limits.acceleration, 0.0, *out,
-        )  # fmt: skip
-        return count, out
+        out = Rows(np.empty(room, np.int64), np.empty((room, ROW)), np.empty(room), np.empty((room, 3), np.int64))
+        return limit_rows(at, basis, limits, reach, out), out
 
     count, _ = rows(1)
     assert count > 100
-    again, (origin, values, bound, tag) = rows(count)
+    again, out = rows(count)
     assert again == count
-    assert (tag[1:] // 12 >= tag[:-1] // 12).all()
-    assert np.isfinite(values).all()
-    assert np.isfinite(bound).all()
-    assert origin.max() < basis.size
+    assert len(rows_within_reach(at, basis, limits, reach).origin) == count
+    # At the bound that a row names, the path displaced by a step is as far from it as the row says.
+    c = 1e-4 * np.random.default_rng(3).normal(size=basis.size + ROW)  # rows at the end reach beyond the last
+    moved = np.empty_like(d)
+    displaced(d, n, basis, c, moved)
+    rate, acceleration = differences(t, moved)
+    bound = Bound(*out.bound.T)
+    assert set(bound.limit) == {POSITION, RATE, ACCELERATION}
+    assert set(bound.side) == {LOWER, UPPER}
+    left = {
+        (POSITION, UPPER): (limits.high - moved) / POSITION_UNIT,
+        (POSITION, LOWER): (moved - limits.low) / POSITION_UNIT,
+        (RATE, UPPER): 1.0 - rate / limits.rate,
+        (RATE, LOWER): 1.0 + rate / limits.rate,
+        (ACCELERATION, UPPER): 1.0 - acceleration / limits.acceleration,
+        (ACCELERATION, LOWER): 1.0 + acceleration / limits.acceleration,
+    }
+    for r in range(0, count, 37):
+        said = out.room[r] - out.rows[r] @ c[out.origin[r] : out.origin[r] + ROW]
+        place = left[bound.limit[r], bound.side[r]][:, bound.frame[r]]
+        assert np.abs(place - said).min() < 1e-9

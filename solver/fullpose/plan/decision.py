@@ -1,0 +1,140 @@
+"""What becomes of a flight: a path inside every limit, or what closes the way and the least error all the same."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fullpose._typing import Array, Codes, Counts
+from fullpose.bounds import MET, limited_code
+from fullpose.plan.fallback import Fallback
+from fullpose.plan.least_error import BestEffort, afresh, least_error
+from fullpose.plan.node_paths import cheapest
+from fullpose.plan.strategies import State, Task, first_look, refined, search
+from fullpose.plan.three_axis import three_axis_path
+from fullpose.rig import FRAMES, LIMITS, Limit
+from fullpose.solution import Blocking
+from fullpose.trajectory.constraints import largest_violation, rig_limits
+from fullpose.trajectory.problem import Problem
+from fullpose.trajectory.windows import Path, smooth_curve
+from fullpose.vocabulary import Decision
+
+STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a node path
+EXCESS = 100.0  # that price: the cost of going over a rate limit by its whole
+WIDENED = 0.5  # [rad] that ranges are widened by where even that finds none
+BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
+
+# Which limit closed the last stage, and what decided then: only the inertia of a start rate closes by acceleration.
+CLOSED_BY = {
+    Limit.POSITION: Decision.POSITION, Limit.RATE: Decision.RATE, Limit.ACCELERATION: Decision.START_RATE,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Flown:
+    """What the search came to: angles (n, 4), iterations (n,), limited codes (n,), and who decided if it failed."""
+
+    angles: Array
+    iterations: Counts
+    limited: Codes
+    decided_by: Decision
+    blocking: Blocking | None
+    grid: float = math.nan  # [rad] of the search
+    node_paths: int = 0  # that were refined
+
+    def held(self, n: int) -> "Flown":
+        """Its first sample, held over n."""
+        angles, iterations = np.repeat(self.angles[:1], n, axis=0), np.repeat(self.iterations[:1], n)
+        return replace(self, angles=angles, iterations=iterations, limited=np.repeat(self.limited[:1], n))
+
+
+def fly(task: Task) -> Flown:
+    """A path of a four-axis rig, found by the table of attempts; else the least error."""
+    state = first_look(task)
+    if state.cheapest.found:
+        state = search(task, state)
+    if state.flown is not None:
+        return _inside(state, state.flown.angles, state.flown)
+    if state.best is not None:
+        return _outside(task, state, state.best)
+    return _without_node_path(task, state)
+
+
+def _inside(state: State, angles: Array, path: Path) -> Flown:
+    """Angles that are exact and inside every limit."""
+    none = np.zeros(len(angles), np.int16)
+    return Flown(angles, path.iterations, none, Decision.CHECKED, None, state.query.grid, state.node_paths)
+
+
+def _outside(task: Task, state: State, path: Path) -> Flown:
+    """No path that was refined is inside every limit: the worst place of `path`, the best, and the least error."""
+    problem = task.problem
+    blocking, decided_by = _closed(problem, path)
+    failed = Flown(
+        path.angles, path.iterations, np.zeros(len(problem), np.int16), decided_by, blocking, state.query.grid,
+        state.node_paths,
+    )  # fmt: skip
+    if not problem.options.best_effort:
+        return failed
+    effort = least_error(problem, path.angles, task.fallback)
+    if not effort.limited.any() and problem.start_rate is None:  # not even that gave the attitude up
+        return _inside(state, effort.angles, path)
+    return replace(failed, angles=effort.angles, limited=effort.limited)
+
+
+def _closed(problem: Problem, path: Path) -> tuple[Blocking, Decision]:
+    """Where a path is farthest outside the limits; inside them, whose start rate it misses."""
+    violation = largest_violation(problem.time, path.angles, rig_limits(problem.rig))
+    if violation.share > MET or problem.start_rate is None:
+        return violation.blocking(problem.time), Decision.ACCELERATION
+    interval = problem.time[1] - problem.time[0]
+    off = np.abs(problem.start_rate - (path.angles[1] - path.angles[0]) / interval)
+    return Blocking(float(problem.time[1]), FRAMES[int(np.argmax(off))], Limit.RATE), Decision.START_RATE
+
+
+def _without_node_path(task: Task, state: State) -> Flown:
+    """No node path leads through: the limit that closes the stage after the last one reached, and the least error."""
+    problem, closed = task.problem, state.cheapest
+    n = len(problem)
+    when = float(problem.time[state.query.samples[closed.reached]])
+    blocking = Blocking(when, FRAMES[closed.frame], LIMITS[closed.limit])
+    angles = np.repeat(problem.rig.home[None], n, axis=0)
+    limited = np.full(n, limited_code(closed.frame, closed.limit), np.int16)
+    node_paths = state.node_paths
+    if problem.options.best_effort:
+        effort, node_paths = _least_error(task, state)
+        angles, limited = effort.angles, effort.limited
+    return Flown(
+        angles, np.zeros(n, np.int32), limited, CLOSED_BY[blocking.limit], blocking, state.query.grid, node_paths
+    )
+
+
+def _least_error(task: Task, state: State) -> tuple[BestEffort, int]:
+    """(the least error from the node path that is least over the limits, the node paths refined for it)."""
+    problem = task.problem
+    query = replace(state.query, grid=problem.options.grid, stretch=STRETCH, excess=EXCESS)
+    for slack in (0.0, WIDENED):
+        node_path, query = cheapest(problem, replace(query, slack=slack), task.told(0.0, 0.5))
+        if not node_path.found:
+            continue
+        angles = smooth_curve(problem, query.samples, node_path)
+        if largest_violation(problem.time, angles, rig_limits(problem.rig)).share > BROKEN:
+            break
+        path = refined(task, angles)
+        return least_error(problem, path.angles, task.fallback), state.node_paths + 1
+    return afresh(problem, np.empty((0, 4)), task.fallback), state.node_paths
+
+
+def fly_three_axis(problem: Problem) -> Flown:
+    """Without freedom: the Euler angles; where they leave the limits, the least error inside them."""
+    angles = three_axis_path(problem.time, problem.attitude, problem.rig, problem.start)
+    violation = largest_violation(problem.time, angles, rig_limits(problem.rig))
+    iterations, limited = np.zeros(len(problem), np.int32), np.zeros(len(problem), np.int16)
+    if violation.share <= MET:
+        return Flown(angles, iterations, limited, Decision.CHECKED, None)
+    failed = Flown(angles, iterations, limited, Decision.THREE_AXIS, violation.blocking(problem.time))
+    if not problem.options.best_effort:
+        return failed
+    anywhere = replace(problem, start=None)  # its first pose is to give way like any other
+    effort = least_error(anywhere, angles, Fallback(anywhere))
+    return replace(failed, angles=effort.angles, limited=effort.limited)
