@@ -199,13 +199,13 @@ def rotation_error(F: Array, C: Array, e: Array) -> float:
 @kernel
 def matrix_error(F: Array, C: Array) -> float:
     """The largest absolute entry of F - C, the papers' figure; nan where one is. F, C (3, 3)."""
-    worst = 0.0
+    largest = 0.0
     for i in range(3):
         for j in range(3):
             gap = abs(F[i, j] - C[i, j])
-            if gap > worst or math.isnan(gap):  # once nan, nothing is greater
-                worst = gap
-    return worst
+            if gap > largest or math.isnan(gap):  # once nan, nothing is greater
+                largest = gap
+    return largest
 
 
 @kernel

@@ -120,7 +120,7 @@ class Player(Protocol):
     wanted: float  # the time scale to go to: 0 hold, 1 run
     offset: Array  # (4,) [rad] whole turns
     # Where it is
-    place: float  # [samples] on the path
+    phase: float  # [samples] on the path
     scale: float  # of time
     scale_rate: float  # [1/s]
 
@@ -132,7 +132,7 @@ PLAYER = np.dtype(
             [
                 ("first", "i8"), ("last", "i8"), ("chart", "i8"), ("dt", "f8"), ("per_tick", "f8"),
                 ("max_rate", "f8", 4), ("max_acceleration", "f8", 4), ("scale_rate_limit", "f8"), ("scale_jerk", "f8"),
-                ("wanted", "f8"), ("offset", "f8", 4), ("place", "f8"), ("scale", "f8"), ("scale_rate", "f8"),
+                ("wanted", "f8"), ("offset", "f8", 4), ("phase", "f8"), ("scale", "f8"), ("scale_rate", "f8"),
             ],
             align=True,
         ),
@@ -141,22 +141,22 @@ PLAYER = np.dtype(
 
 
 @kernel
-def _excess(player: Player, x: Array, x1: Array, v1: Array) -> float:
+def _limit_share(player: Player, x: Array, x1: Array, v1: Array) -> float:
     """The worst share of a rate or acceleration limit that the step x1 -> x takes; 1 is the limit."""
-    worst = 0.0
+    largest = 0.0
     for i in range(4):
         v = (x[i] - x1[i]) / player.dt
         a = (v - v1[i]) / player.dt
-        worst = max(worst, abs(v) / player.max_rate[i], abs(a) / player.max_acceleration[i])
-    return worst
+        largest = max(largest, abs(v) / player.max_rate[i], abs(a) / player.max_acceleration[i])
+    return largest
 
 
 @kernel
 def _wanted_rate(player: Player) -> float:
     """The rate of change of the time scale that would be taken, but for the frames' limits [1/s]."""
     wanted = player.wanted
-    if player.per_tick == 1.0 and wanted == 1.0 and abs(player.place - np.rint(player.place)) >= _SNAP:
-        wanted = 1.0 - _SLIP * player.dt * (player.place - math.floor(player.place))
+    if player.per_tick == 1.0 and wanted == 1.0 and abs(player.phase - np.rint(player.phase)) >= _SNAP:
+        wanted = 1.0 - _SLIP * player.dt * (player.phase - math.floor(player.phase))
     gap = wanted - player.scale
     rate = min(player.scale_rate_limit, math.sqrt(2.0 * player.scale_jerk * abs(gap)))
     # Speeding up the change is jerk-limited; slowing it down follows the square root above.
@@ -165,9 +165,9 @@ def _wanted_rate(player: Player) -> float:
 
 
 @kernel
-def _turned(path: Path, place: float, offset: Array, x: Array, q: Array) -> bool:
+def _turned(path: Path, phase: float, offset: Array, x: Array, q: Array) -> bool:
     """`evaluate`, x in the turns that the rig is in."""
-    flight = evaluate(path, place, x, q)
+    flight = evaluate(path, phase, x, q)
     for i in range(4):
         x[i] += offset[i]
     return flight
@@ -183,37 +183,37 @@ def advance(angles: Array, target: Array, error: Array, players: Any, x1: Array,
     player = players[0]
     path = Path(angles, target, error, player.first, player.last, player.chart)
     end = angles.shape[0] - 1.0
-    place = player.place
+    phase = player.phase
     scale = player.scale
     rate = _wanted_rate(player)
     best = math.inf
-    best_place = place
+    best_phase = phase
     best_rate = 0.0
     for attempt in range(8):
         # Less and less of the wanted change, then the other way: 0 is as safe as the plan itself.
         share = 1.0 - 0.25 * attempt if attempt < 5 else -0.25 * (attempt - 4)
         change = rate * share
-        to = place + min(1.0, max(0.0, scale + change * player.dt)) * player.per_tick
+        to = phase + min(1.0, max(0.0, scale + change * player.dt)) * player.per_tick
         nearest = np.rint(to)
         if abs(to - nearest) < _SNAP:
             to = nearest
         to = min(to, end)
         flight = _turned(path, to, player.offset, x, q)
-        excess = _excess(player, x, x1, v1)
-        if excess < best:
-            best = excess
-            best_place = to
+        taken = _limit_share(player, x, x1, v1)
+        if taken < best:
+            best = taken
+            best_phase = to
             best_rate = change
-        if excess <= 1.0 + _SLACK or rate == 0.0:
-            best_place = to
+        if taken <= 1.0 + _SLACK or rate == 0.0:
+            best_phase = to
             best_rate = change
             break
     else:
-        flight = _turned(path, best_place, player.offset, x, q)
+        flight = _turned(path, best_phase, player.offset, x, q)
     player.scale = min(1.0, max(0.0, scale + best_rate * player.dt))
     player.scale_rate = best_rate
-    player.place = best_place
-    if best_place >= end:
+    player.phase = best_phase
+    if best_phase >= end:
         return -1
     return 1 if flight else 0
 
@@ -240,7 +240,7 @@ class PathPlayer:
         player.max_rate[:], player.max_acceleration[:] = rig.max_rate, rig.max_acceleration
         player.scale_rate_limit, player.scale_jerk = scale_rate, scale_jerk
         # Views, for the loop: to read a record's attribute takes microseconds.
-        self._wanted, self._place, self._scale = (self._players[name] for name in ("wanted", "place", "scale"))
+        self._wanted, self._phase, self._scale = (self._players[name] for name in ("wanted", "phase", "scale"))
         self._scale_rate, self._offset = self._players["scale_rate"], self._players["offset"][0]
         self.scale_to(1.0)
 
@@ -256,7 +256,7 @@ class PathPlayer:
 
     def rewind(self) -> None:
         """To the start, at full scale: the path begins at rest."""
-        self._place[0], self._scale[0], self._scale_rate[0] = 0.0, 1.0, 0.0
+        self._phase[0], self._scale[0], self._scale_rate[0] = 0.0, 1.0, 0.0
         self.scale_to(1.0)
 
     def tick(self, x1: Array, v1: Array, x: Array, q: Array) -> int:
@@ -266,7 +266,7 @@ class PathPlayer:
     @property
     def time_s(self) -> float:
         """The flight's own time; before its start in the lead-in [s]."""
-        return float((self._place[0] - self._first) / self._rate_hz + self._start_s)
+        return float((self._phase[0] - self._first) / self._rate_hz + self._start_s)
 
     @property
     def scale(self) -> float:
