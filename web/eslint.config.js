@@ -5,6 +5,22 @@ import globals from "globals";
 import ts from "typescript-eslint";
 import svelteConfig from "./svelte.config.js";
 
+/** Who may import whom: each of these folders only those before it, and itself. */
+const LAYERS = ["contract", "net", "rules", "state", "ui", "features"];
+
+function below(layer, index) {
+  const above = LAYERS.slice(index + 1);
+  const regexes = [`^(\\.\\./)+(${[...above, "App|main"].join("|")})(/|\\.|$)`];
+  // One page knows nothing of another.
+  if (layer === "features") regexes.push("^\\.\\./(?!\\.\\./)");
+  const message = "contract < net < rules < state < ui < features; no feature imports another";
+  const patterns = regexes.map((regex) => ({ regex, message }));
+  return {
+    files: [`src/${layer}/**`],
+    rules: { "no-restricted-imports": ["error", { patterns }] },
+  };
+}
+
 export default defineConfig(
   globalIgnores(["src/contract/schema.d.ts"]),
   { linterOptions: { reportUnusedDisableDirectives: "error" } },
@@ -31,4 +47,5 @@ export default defineConfig(
     files: ["src/**/*.svelte", "src/**/*.svelte.ts"],
     languageOptions: { parserOptions: { parser: ts.parser, svelteConfig } },
   },
+  ...LAYERS.map(below),
 );

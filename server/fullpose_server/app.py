@@ -68,7 +68,9 @@ def create_app(settings: Settings) -> FastAPI:
 
     def contract() -> dict[str, Any]:
         if app.openapi_schema is None:
-            app.openapi_schema = openapi.contract(app)
+            app.openapi_schema = openapi.contract(
+                app, [route for module in ROUTES for route in module.router.routes], API
+            )
         return app.openapi_schema
 
     app.openapi = contract  # type: ignore[method-assign]  # FastAPI's documented way to extend it

@@ -4,7 +4,8 @@ import "./styles/base.css";
 
 import { mount } from "svelte";
 import App from "./App.svelte";
+import { makeStores } from "./state/stores";
 
 const target = document.getElementById("app");
 if (!target) throw new Error("index.html has no #app");
-mount(App, { target });
+mount(App, { target, props: { stores: makeStores() } });

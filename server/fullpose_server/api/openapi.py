@@ -1,12 +1,14 @@
 """The contract: FastAPI's own, with problem documents for every error and the WebSocket messages beside the rest."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import chain
 from typing import Any, get_args
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
+from fastapi.routing import APIWebSocketRoute
 from pydantic.json_schema import models_json_schema
+from starlette.routing import BaseRoute
 
 from fullpose_server.api.problems import MEDIA_TYPE
 from fullpose_server.api.schemas.base import Problem, Wire
@@ -15,6 +17,7 @@ from fullpose_server.api.schemas.solve import Opened, OpenSolve, Solved, SolveIn
 from fullpose_server.api.schemas.stop import STOP_IN, STOP_OUT
 from fullpose_server.api.schemas.stream import STREAM_IN, STREAM_OUT
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
+from fullpose_server.runtime.contract.telemetry import Flag
 
 # The messages of each WebSocket, what a client sends and what the server answers; each tagged by its `type`.
 SENT = {
@@ -29,12 +32,14 @@ ANSWERED = {
     "SolveMessageOut": (Opened, Solved, SolveProblem),
     "LiveMessageOut": (LiveOpened, LiveReplyOut, LiveProblem),
 }
+# Which of them each WebSocket speaks, by the name of its route.
+SPOKEN = {"stream": "Stream", "replay_stream": "Stream", "solve_stream": "Solve", "live": "Live"}
 MESSAGES = (*chain.from_iterable(SENT.values()), TrajectoryIn, SolveIn)
 ANSWERS = (Problem, *chain.from_iterable(ANSWERED.values()))
 
 
-def contract(app: FastAPI) -> dict[str, Any]:
-    """The OpenAPI document of the app."""
+def contract(app: FastAPI, routes: Iterable[BaseRoute], prefix: str) -> dict[str, Any]:
+    """The OpenAPI document of the app, whose API has these `routes` below `prefix`."""
     document = get_openapi(
         title=app.title,
         version=app.version,
@@ -58,6 +63,8 @@ def contract(app: FastAPI) -> dict[str, Any]:
         for operation in path.values():
             _problems(operation["responses"])
     document["components"]["schemas"] = dict(sorted(schemas.items()))
+    document["x-websockets"] = _sockets(routes, prefix)
+    document["x-telemetry-flags"] = {flag.name.lower(): flag.value for flag in Flag if flag.name}
     return document
 
 
@@ -68,6 +75,16 @@ def _union(models: Sequence[type[Wire]]) -> dict[str, Any]:
     return {
         "oneOf": [{"$ref": ref} for ref in refs.values()],
         "discriminator": {"propertyName": "type", "mapping": mapping},
+    }
+
+
+def _sockets(routes: Iterable[BaseRoute], prefix: str) -> dict[str, Any]:
+    """The API's WebSockets by path, which OpenAPI has no place for: what each is sent, and what it answers."""
+    named = {prefix + route.path: SPOKEN[route.name] for route in routes if isinstance(route, APIWebSocketRoute)}
+    ends = {"sent": "In", "answered": "Out"}
+    return {
+        path: {end: {"$ref": f"#/components/schemas/{spoken}Message{way}"} for end, way in ends.items()}
+        for path, spoken in sorted(named.items())
     }
 
 

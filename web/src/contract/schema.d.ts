@@ -2181,6 +2181,11 @@ export interface components {
             /** Rig Hash */
             rig_hash: string;
             /**
+             * Scene
+             * @description Where the rig's 3D scene is
+             */
+            scene: string;
+            /**
              * State
              * @description Session state; disconnected where no rig process runs
              */
@@ -4504,4 +4509,18 @@ export interface operations {
             };
         };
     };
+}
+export interface sockets {
+    "/api/v1/rigs/{rig}/live": { sent: components["schemas"]["LiveMessageIn"]; answered: components["schemas"]["LiveMessageOut"] };
+    "/api/v1/rigs/{rig}/stream": { sent: components["schemas"]["StreamMessageIn"]; answered: components["schemas"]["StreamMessageOut"] };
+    "/api/v1/runs/{run}/stream": { sent: components["schemas"]["StreamMessageIn"]; answered: components["schemas"]["StreamMessageOut"] };
+    "/api/v1/solve": { sent: components["schemas"]["SolveMessageIn"]; answered: components["schemas"]["SolveMessageOut"] };
+}
+export interface flags {
+    late: 1;
+    limited: 2;
+    lead: 4;
+    enabled: 8;
+    braking: 16;
+    stale: 32;
 }

@@ -1,11 +1,20 @@
 /** The wire models by the names the console uses; all of them come from the generated schema. */
-import type { components } from "./schema";
+import type { components, flags, paths } from "./schema";
 
 type Schemas = components["schemas"];
 
 export type Alarm = Schemas["AlarmOut"];
-export type CommandOut = Schemas["CommandOut"];
+/** A command as it is sent; which ones there are, and what each is given. */
+export type CommandBody = paths["/api/v1/rigs/{rig}/commands"]["post"]["requestBody"]["content"]["application/json"];
+export type CommandName = CommandBody["command"];
+export type ArgsOf<Name extends CommandName> = Given<Extract<CommandBody, { command: Name }>["args"]>;
 export type Comparison = Schemas["ComparisonOut"];
+export type Convention = NonNullable<FlightForm["convention"]>;
+export type ExportFormat = NonNullable<
+  NonNullable<paths["/api/v1/runs/{run}/export"]["get"]["parameters"]["query"]>["format"]
+>;
+/** A flight's file as a form. */
+export type FlightForm = paths["/api/v1/trajectories"]["post"]["requestBody"]["content"]["multipart/form-data"];
 export type FrameName = keyof Schemas["FramesOut"];
 export type Health = Schemas["HealthOut"];
 export type Lease = Schemas["LeaseOut"];
@@ -16,13 +25,13 @@ export type Method = Schemas["MethodOut"];
 export type MethodFigures = Schemas["MethodFiguresOut"];
 export type Peak = Schemas["PeakOut"];
 export type Plan = Schemas["PlanOut"];
-export type PlanIn = Schemas["PlanIn"];
 export type PlanMargin = Schemas["MarginOut"];
 export type PlanSamples = Schemas["PlanSamples"];
 export type Problem = Schemas["Problem"];
 export type RemedyKind = Schemas["RemedyIn"]["kind"];
 export type Rig = Schemas["RigOut"];
 export type Run = Schemas["RunOut"];
+export type ScenePoseAt = Schemas["ScenePoseIn"];
 export type ScenePose = Schemas["ScenePoseOut"];
 export type Snapshot = Schemas["SessionOut"];
 export type StateName = Schemas["State"];
@@ -41,3 +50,8 @@ export type ServerMessage = Schemas["StreamMessageOut"];
 /** From the outside in; the order of every array of four. */
 export const FRAMES: readonly FrameName[] = ["base", "outer", "middle", "inner"];
 export const STREAM_SCHEMA: Schemas["Hello"]["schema"] = "fullpose.stream/1";
+/** Bits of a sample's flags that the console shows. */
+export const FLAG: Pick<flags, "stale"> = { stale: 32 };
+
+/** What a client may leave out of `T`: the generated types say of a default that it is there, as it is in an answer. */
+type Given<T> = T extends readonly unknown[] ? T : T extends object ? { [Key in keyof T]?: Given<T[Key]> } : T;

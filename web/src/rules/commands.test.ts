@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import contract from "../../../docs/openapi.json";
+import type { CommandName } from "../contract/types";
 import { COMMANDS, nextStep, recoveryStep, shownCommands, verdict, type Circumstances } from "./commands";
 
 const ARMED: Circumstances = {
@@ -21,11 +22,11 @@ const NOTHING: Circumstances = {
   busy: true,
 };
 
-const enabled = (command: string, now: Partial<Circumstances>): boolean =>
+const enabled = (command: CommandName, now: Partial<Circumstances>): boolean =>
   verdict(command, { ...ARMED, ...now }).enabled;
 
 describe("stop and E-stop", () => {
-  it.each(["stop", "estop"])("%s may always be given", (command) => {
+  it.each(["stop", "estop"] as const)("%s may always be given", (command) => {
     expect(verdict(command, NOTHING)).toEqual({ enabled: true });
   });
 });
@@ -52,19 +53,26 @@ describe("a command", () => {
     expect(COMMANDS.filter(({ motion, key }) => motion && key)).toEqual([]);
   });
 
-  it.each(["arm", "start", "resume", "move", "home"])("that moves the rig is refused on stale data: %s", (command) => {
-    const now = { allowed: [command] };
-    expect(enabled(command, now)).toBe(true);
-    expect(enabled(command, { ...now, freshness: "late" })).toBe(true);
-    expect(enabled(command, { ...now, freshness: "stale" })).toBe(false);
-  });
+  it.each(["arm", "start", "resume", "move", "home", "jog"] as const)(
+    "that moves the rig is refused on stale data: %s",
+    (command) => {
+      const now = { allowed: [command] };
+      expect(enabled(command, now)).toBe(true);
+      expect(enabled(command, { ...now, freshness: "late" })).toBe(true);
+      expect(enabled(command, { ...now, freshness: "stale" })).toBe(false);
+    },
+  );
 
-  it.each(["hold", "disarm", "connect", "unload"])("that calms the rig may be given on stale data: %s", (command) => {
-    expect(enabled(command, { allowed: [command], freshness: "stale" })).toBe(true);
-  });
+  it.each(["hold", "disarm", "connect", "unload"] as const)(
+    "that calms the rig may be given on stale data: %s",
+    (command) => {
+      expect(enabled(command, { allowed: [command], freshness: "stale" })).toBe(true);
+    },
+  );
 
   it("unknown to the console counts as motion", () => {
-    expect(enabled("pirouette", { allowed: ["pirouette"], freshness: "stale" })).toBe(false);
+    const unknown = "pirouette" as CommandName; // of a newer server
+    expect(enabled(unknown, { allowed: [unknown], freshness: "stale" })).toBe(false);
   });
 });
 
@@ -81,14 +89,9 @@ it("acknowledge needs an alarm, reset needs none to be waiting", () => {
 });
 
 it("the main button follows the run, and the way back from a trip", () => {
-  expect(["disconnected", "idle", "ready", "armed", "running", "held"].map((state) => nextStep(state))).toEqual([
-    "connect",
-    "load",
-    "arm",
-    "start",
-    "hold",
-    "resume",
-  ]);
+  expect(
+    (["disconnected", "idle", "ready", "armed", "running", "held"] as const).map((state) => nextStep(state)),
+  ).toEqual(["connect", "load", "arm", "start", "hold", "resume"]);
   expect(nextStep("stopping")).toBeNull();
   expect(nextStep(null)).toBeNull();
   expect(recoveryStep("faulted", 2)).toBe("acknowledge");

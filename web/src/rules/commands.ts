@@ -1,16 +1,17 @@
 /** Which command may be given now, and why not. The server decides; this only spares the operator a refusal. */
+import type { CommandName, StateName } from "../contract/types";
 import type { Freshness } from "./freshness";
 
 export interface CommandLook {
-  name: string;
+  name: CommandName;
   label: string;
   /** Sets the rig in motion or lets it: refused on stale data. */
   motion: boolean;
   key?: string;
 }
 
-const motion = (name: string, label: string): CommandLook => ({ name, label, motion: true });
-const still = (name: string, label: string, key?: string): CommandLook =>
+const motion = (name: CommandName, label: string): CommandLook => ({ name, label, motion: true });
+const still = (name: CommandName, label: string, key?: string): CommandLook =>
   key ? { name, label, motion: false, key } : { name, label, motion: false };
 
 /** In the order of their buttons. Stop and E-stop are not here: they have buttons of their own, always enabled. */
@@ -31,7 +32,7 @@ export const COMMANDS: readonly CommandLook[] = [
 ];
 
 export interface Circumstances {
-  state: string | null;
+  state: StateName | null;
   allowed: readonly string[];
   freshness: Freshness;
   /** Whether this console holds the lease. */
@@ -49,7 +50,7 @@ export type Verdict = { enabled: true } | { enabled: false; why: string };
 const no = (why: string): Verdict => ({ enabled: false, why });
 
 /** Whether `command` may be given. Stop and E-stop always may: no lease, no fresh data, no link state is asked for. */
-export function verdict(command: string, now: Circumstances): Verdict {
+export function verdict(command: CommandName, now: Circumstances): Verdict {
   if (command === "stop" || command === "estop") return { enabled: true };
   if (now.state === null) return no("No word from the rig yet");
   if (!now.allowed.includes(command)) return no(`Not allowed while ${now.state}`);
@@ -71,8 +72,8 @@ export function shownCommands(live: boolean, unacknowledged: number): readonly C
 }
 
 /** The step a run most likely takes next, drawn as the main button; null where there is none. */
-export function nextStep(state: string | null, live = false): string | null {
-  const steps: Record<string, string> = {
+export function nextStep(state: StateName | null, live = false): CommandName | null {
+  const steps: Partial<Record<StateName, CommandName>> = {
     disconnected: "connect",
     idle: "load",
     ready: "arm",
@@ -84,7 +85,7 @@ export function nextStep(state: string | null, live = false): string | null {
 }
 
 /** After a trip: acknowledge while an alarm waits for it, then reset. */
-export function recoveryStep(state: string | null, unacknowledged: number): string | null {
+export function recoveryStep(state: StateName | null, unacknowledged: number): CommandName | null {
   if (state !== "faulted" && state !== "estopped") return null;
   return unacknowledged > 0 ? "acknowledge" : "reset";
 }

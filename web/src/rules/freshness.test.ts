@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { NO_LINK, type Link } from "../adapter/link";
+import { NO_LINK, type Link } from "../net/link";
 import { dataAgeMs, freshness, LATE_MS, looksStale, STALE_MS } from "./freshness";
 
 const OPEN: Link = { ...NO_LINK, phase: "open", ageAtSendMs: 3, receivedAtMs: 1000, roundTripMs: 8 };

@@ -1,5 +1,5 @@
 /** How old the data on the screen is, and whether a person may still steer by it. */
-import type { Link } from "../adapter/link";
+import type { Link } from "../net/link";
 
 /** Beyond this the numbers no longer follow the rig closely; they are marked. */
 export const LATE_MS = 250;

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { FLAG } from "../adapter/telemetry";
+import { FLAG } from "../contract/types";
 import { liveFigures, liveLook } from "./live";
 
 it("says whether a live source is followed", () => {

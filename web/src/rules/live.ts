@@ -1,6 +1,5 @@
 /** What becomes of a live source, as far as telemetry tells. */
-import { FLAG } from "../adapter/telemetry";
-import type { LiveHealth } from "../contract/types";
+import { FLAG, type LiveHealth } from "../contract/types";
 import { fixed, integer } from "./format";
 
 export interface LiveLook {

@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
-import { NO_LINK, reduce, type Link } from "../adapter/link";
 import type { Snapshot } from "../contract/types";
+import { NO_LINK, reduce, type Link } from "../net/link";
 import { linkWarning, listsWarning, lost } from "./warning";
 
 const SESSION = { state: "running" } as Snapshot;

@@ -1,5 +1,5 @@
 /** What the console warns of on every page: a lost connection, old data, lists that could not be read. */
-import type { Link } from "../adapter/link";
+import type { Link } from "../net/link";
 
 /** Whether the connection is lost; the first attempt of a page that just opened is none. */
 export function lost(link: Link): boolean {

@@ -1,6 +1,6 @@
 /** Where telemetry comes from: a rig as it lives, or a run that is replayed. Plots and figures draw either. */
-import type { History } from "../adapter/history";
-import type { Sample } from "../adapter/telemetry";
+import type { History } from "../net/history";
+import type { Sample } from "../net/telemetry";
 import type { TimeAxis } from "../rules/axis";
 
 export interface Feed {

@@ -1,6 +1,6 @@
 /** Jobs of the server: their list, read again while any of them is under way. */
-import { ApiError, messageOf } from "../adapter/api";
-import { backoffMs } from "../adapter/stream";
+import { ApiError, messageOf } from "../net/errors";
+import { backoffMs } from "../net/stream";
 
 export interface Job {
   id: string;

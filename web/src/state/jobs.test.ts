@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { ApiError } from "../adapter/api";
+import { ApiError } from "../net/errors";
 import { Jobs, type Job } from "./jobs.svelte";
 
 /** A server's jobs in memory, and waits that a test lets pass. */

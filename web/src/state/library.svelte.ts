@@ -1,10 +1,11 @@
 /** What the server keeps: rigs, trajectories, methods, runs, and the jobs: plans and comparisons. */
-import { api, messageOf, upload } from "../adapter/api";
-import { backoffMs } from "../adapter/stream";
-import type { Comparison, Health, Method, Plan, RemedyKind, Rig, Run, Trajectory } from "../contract/types";
+import type { Comparison, Convention, Health, Method, Plan, RemedyKind, Rig, Run, Trajectory } from "../contract/types";
+import type { Api } from "../net/api";
+import { messageOf } from "../net/errors";
+import { backoffMs } from "../net/stream";
 import { Jobs } from "./jobs.svelte";
 
-class Library {
+export class Library {
   rigs: Rig[] = $state.raw([]);
   trajectories: Trajectory[] = $state.raw([]);
   methods: Method[] = $state.raw([]);
@@ -16,30 +17,39 @@ class Library {
   plan: string | null = $state(null);
   uploading: { name: string; fraction: number } | null = $state(null);
 
-  readonly #plans = new Jobs<Plan>(api.plans, api.plan);
-  readonly comparisons = new Jobs<Comparison>(api.comparisons, api.comparison);
+  readonly #plans: Jobs<Plan>;
+  readonly comparisons: Jobs<Comparison>;
 
   /** What could not be read, by what it is. */
   #problems: Readonly<Record<string, string>> = $state.raw({});
-  readonly #reads = new Map<string, number>();
+  readonly #reads: Record<string, number> = {};
   #retry = 0;
   #misses = 0;
 
   /** Why what is shown may not be what the server has; null where all of it was read. */
-  readonly problem: string | null = $derived(
-    Object.values(this.#problems)[0] ?? this.#plans.problem ?? this.comparisons.problem,
-  );
-  readonly plans = $derived(this.#plans.all);
-  readonly chosenTrajectory = $derived(this.trajectories.find(({ sha256 }) => sha256 === this.trajectory) ?? null);
-  readonly chosenPlan = $derived(this.plans.find(({ id }) => id === this.plan) ?? null);
+  readonly problem: string | null;
+  readonly plans: readonly Plan[];
+  readonly chosenTrajectory: Trajectory | null;
+  readonly chosenPlan: Plan | null;
+
+  constructor(private readonly api: Api) {
+    const plans = new Jobs<Plan>(api.plans, api.plan);
+    const comparisons = new Jobs<Comparison>(api.comparisons, api.comparison);
+    this.#plans = plans;
+    this.comparisons = comparisons;
+    this.plans = $derived(plans.all);
+    this.problem = $derived(Object.values(this.#problems)[0] ?? plans.problem ?? comparisons.problem);
+    this.chosenTrajectory = $derived(this.trajectories.find(({ sha256 }) => sha256 === this.trajectory) ?? null);
+    this.chosenPlan = $derived(plans.all.find(({ id }) => id === this.plan) ?? null);
+  }
 
   /** Reads what every page needs; a part that fails says so, leaves the others, and all is tried again until it is read. */
   async refresh(): Promise<void> {
     clearTimeout(this.#retry);
     await Promise.all([
       this.refreshRigs(),
-      this.#read("methods", api.methods, (methods) => (this.methods = methods)),
-      this.#read("health", api.health, (health) => (this.health = health)),
+      this.#read("methods", this.api.methods, (methods) => (this.methods = methods)),
+      this.#read("health", this.api.health, (health) => (this.health = health)),
       this.refreshTrajectories(),
       this.#plans.refresh(),
       ...(this.#problems["runs"] === undefined ? [] : [this.refreshRuns()]),
@@ -51,15 +61,34 @@ class Library {
       this.#retry = window.setTimeout(() => void this.refresh(), backoffMs(this.#misses, Math.random()));
   }
 
-  refreshRigs = (): Promise<void> => this.#read("rigs", api.rigs, (rigs) => (this.rigs = rigs));
+  refreshRigs = (): Promise<void> => this.#read("rigs", this.api.rigs, (rigs) => (this.rigs = rigs));
   refreshTrajectories = (): Promise<void> =>
-    this.#read("trajectories", api.trajectories, (trajectories) => (this.trajectories = trajectories));
-  refreshRuns = (): Promise<void> => this.#read("runs", api.runs, (runs) => (this.runs = runs));
+    this.#read("trajectories", this.api.trajectories, (trajectories) => (this.trajectories = trajectories));
+  refreshRuns = (): Promise<void> => this.#read("runs", this.api.runs, (runs) => (this.runs = runs));
 
-  async upload(file: File, convention: string): Promise<Trajectory> {
+  /** What the operator works with from now on. */
+  chooseTrajectory(sha256: string | null): void {
+    this.trajectory = sha256;
+  }
+
+  choosePlan(id: string | null): void {
+    this.plan = id;
+  }
+
+  async deleteTrajectory(sha256: string): Promise<void> {
+    await this.api.deleteTrajectory(sha256);
+    if (this.trajectory === sha256) this.trajectory = null;
+    await this.refreshTrajectories();
+  }
+
+  async upload(file: File, convention: Convention): Promise<Trajectory> {
     this.uploading = { name: file.name, fraction: 0 };
     try {
-      const stored = await upload(file, convention, (fraction) => (this.uploading = { name: file.name, fraction }));
+      const stored = await this.api.upload(
+        file,
+        convention,
+        (fraction) => (this.uploading = { name: file.name, fraction }),
+      );
       await this.refreshTrajectories();
       this.trajectory = stored.sha256;
       this.plan = null;
@@ -70,7 +99,7 @@ class Library {
   }
 
   async createPlan(trajectory: string, rig: string, method: string): Promise<Plan> {
-    const plan = await api.createPlan(trajectory, rig, method);
+    const plan = await this.api.createPlan(trajectory, rig, method);
     this.#plans.put(plan);
     this.plan = plan.id;
     return plan;
@@ -78,40 +107,38 @@ class Library {
 
   /** Searches a remedy: a plan of its own, which is not what the operator works with before it is chosen. */
   async createRemedy(plan: string, kind: RemedyKind): Promise<void> {
-    this.#plans.put(await api.createRemedy(plan, kind));
+    this.#plans.put(await this.api.createRemedy(plan, kind));
   }
 
   async cancelPlan(id: string): Promise<void> {
-    await api.cancelPlan(id);
+    await this.api.cancelPlan(id);
     await this.#plans.refresh();
   }
 
   async compare(trajectory: string, rig: string, methods: string[]): Promise<Comparison> {
-    const comparison = await api.createComparison(trajectory, rig, methods);
+    const comparison = await this.api.createComparison(trajectory, rig, methods);
     this.comparisons.put(comparison);
     return comparison;
   }
 
   /** Cancels one that is under way; removes one that is not. */
   async removeComparison(id: string): Promise<void> {
-    await api.removeComparison(id);
+    await this.api.removeComparison(id);
     await this.comparisons.refresh();
   }
 
   /** Of two reads of one list the one asked for last counts, whichever is answered first. */
   async #read<T>(what: string, ask: () => Promise<T>, take: (answer: T) => void): Promise<void> {
-    const turn = (this.#reads.get(what) ?? 0) + 1;
-    this.#reads.set(what, turn);
+    const turn = (this.#reads[what] ?? 0) + 1;
+    this.#reads[what] = turn;
     try {
       const answer = await ask();
-      if (this.#reads.get(what) !== turn) return;
+      if (this.#reads[what] !== turn) return;
       take(answer);
       const { [what]: _, ...others } = this.#problems;
       this.#problems = others;
     } catch (error) {
-      if (this.#reads.get(what) === turn) this.#problems = { ...this.#problems, [what]: messageOf(error) };
+      if (this.#reads[what] === turn) this.#problems = { ...this.#problems, [what]: messageOf(error) };
     }
   }
 }
-
-export const library = new Library();

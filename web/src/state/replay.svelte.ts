@@ -1,10 +1,9 @@
 /** A recorded run played again through the stream's protocol, with a clock of this console's own. */
-import { api } from "../adapter/api";
-import { History } from "../adapter/history";
-import { NO_LINK, reduce, type Link } from "../adapter/link";
-import { BROWSER, RECORD_MS, Stream, type Listener } from "../adapter/stream";
-import { sampleAt, type Batch, type Sample } from "../adapter/telemetry";
 import type { ReplayOf } from "../contract/types";
+import { History } from "../net/history";
+import { NO_LINK, reduce, type Link } from "../net/link";
+import { RECORD_MS, type Connect, type Listener, type Stream } from "../net/stream";
+import { sampleAt, type Batch, type Sample } from "../net/telemetry";
 import type { TimeAxis } from "../rules/axis";
 import type { Feed } from "./feed";
 
@@ -33,7 +32,8 @@ export class Replay implements Feed {
   readonly session = $derived(this.link.session);
   readonly duration = $derived(this.of?.duration_s ?? 0);
 
-  constructor(run: string) {
+  /** Plays what the stream at `url` brings. */
+  constructor(url: string, connect: Connect) {
     const listener: Listener = {
       link: (event) => (this.link = reduce(this.link, event)),
       batch: (batch) => this.#batch(batch),
@@ -43,7 +43,7 @@ export class Replay implements Feed {
         this.speed = factor;
       },
     };
-    this.#stream = new Stream(api.replayUrl(run), listener, BROWSER, 30, "binary", RECORD_MS);
+    this.#stream = connect(url, listener, RECORD_MS);
   }
 
   close(): void {

@@ -1,7 +1,7 @@
 /** Where the console is; the browser's history is the source. */
 import { pathOf, routeOf, type Page } from "../rules/router";
 
-class Router {
+export class Router {
   route = $state.raw(routeOf(location.pathname));
 
   constructor() {
@@ -19,5 +19,3 @@ class Router {
     this.route = routeOf(path);
   }
 }
-
-export const router = new Router();

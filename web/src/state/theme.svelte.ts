@@ -3,7 +3,7 @@ type Theme = "light" | "dark";
 
 const KEY = "fullpose.theme";
 
-class ThemeChoice {
+export class ThemeChoice {
   current: Theme = $state("dark");
 
   constructor() {
@@ -27,5 +27,3 @@ class ThemeChoice {
     document.documentElement.dataset["theme"] = theme;
   }
 }
-
-export const theme = new ThemeChoice();

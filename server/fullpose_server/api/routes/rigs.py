@@ -42,5 +42,6 @@ def _rig(services: Services, entry: RigEntry) -> RigOut:
             "frames": FramesOut.model_validate(frames),
             "payload": PayloadOut(size_m=entry.payload.size_m, mesh=entry.payload.mesh),
             "state": services.hosts.state(rig.name),
+            "scene": f"/scene/{rig.name}/",
         }
     )

@@ -46,3 +46,4 @@ class RigOut(Wire):
     frames: FramesOut
     payload: PayloadOut
     state: str = Field(description="Session state; disconnected where no rig process runs")
+    scene: str = Field(description="Where the rig's 3D scene is")

@@ -1,0 +1,71 @@
+/** The REST API: one function a request. Paths, parameters, bodies and answers are those of the generated contract. */
+import type {
+  ArgsOf,
+  CommandBody,
+  CommandName,
+  ExportFormat,
+  LeaseAction,
+  LeaseToken,
+  RemedyKind,
+  ScenePoseAt,
+} from "../contract/types";
+import { pathTo, request, socketTo } from "./request";
+import { upload } from "./upload";
+
+/** How long an answer may take: to a Stop, to a command or the lease, and to what is read or begun. */
+const STOP = { withinMs: 2000 };
+const COMMAND = { withinMs: 10_000 };
+const READ = { withinMs: 60_000 };
+
+export const api = {
+  health: () => request("get", "/api/v1/health", {}, READ),
+  rigs: () => request("get", "/api/v1/rigs", {}, READ),
+  methods: () => request("get", "/api/v1/methods", {}, READ),
+
+  trajectories: () => request("get", "/api/v1/trajectories", {}, READ),
+  preview: (sha256: string, points = 800) =>
+    request("get", "/api/v1/trajectories/{sha256}/preview", { sha256 }, { ...READ, query: { points } }),
+  deleteTrajectory: (sha256: string) => request("delete", "/api/v1/trajectories/{sha256}", { sha256 }, READ),
+  upload,
+
+  plans: () => request("get", "/api/v1/plans", {}, READ),
+  plan: (plan: string) => request("get", "/api/v1/plans/{plan}", { plan }, READ),
+  planSamples: (plan: string, points = 1200) =>
+    request("get", "/api/v1/plans/{plan}/samples", { plan }, { ...READ, query: { points } }),
+  createPlan: (trajectory: string, rig: string, method: string) =>
+    request("post", "/api/v1/plans", {}, { ...READ, body: { trajectory, rig, method, options: {} } }),
+  createRemedy: (plan: string, kind: RemedyKind) =>
+    request("post", "/api/v1/plans/{plan}/remedies", { plan }, { ...READ, body: { kind } }),
+  cancelPlan: (plan: string) => request("delete", "/api/v1/plans/{plan}", { plan }, READ),
+
+  comparisons: () => request("get", "/api/v1/compare", {}, READ),
+  comparison: (comparison: string) => request("get", "/api/v1/compare/{comparison}", { comparison }, READ),
+  createComparison: (trajectory: string, rig: string, methods: string[]) =>
+    request("post", "/api/v1/compare", {}, { ...READ, body: { trajectory, rig, methods } }),
+  /** Cancels one that is under way, removes one that is not. */
+  removeComparison: (comparison: string) => request("delete", "/api/v1/compare/{comparison}", { comparison }, READ),
+
+  command: <Name extends CommandName>(rig: string, command: Name, args: ArgsOf<Name>, lease: LeaseToken | null) => {
+    // What has a default may be left out; the generated types are those of an answer, in which it is always there.
+    const body = { command, args, lease } as CommandBody;
+    return request("post", "/api/v1/rigs/{rig}/commands", { rig }, { ...COMMAND, body });
+  },
+  lease: (rig: string, action: LeaseAction) =>
+    request("post", "/api/v1/rigs/{rig}/lease", { rig }, { ...COMMAND, body: { action } }),
+  releaseLease: (rig: string) => request("delete", "/api/v1/rigs/{rig}/lease", { rig }, COMMAND),
+  stop: (rig: string) => request("post", "/api/v1/rigs/{rig}/stop", { rig }, STOP),
+  estop: (rig: string) => request("post", "/api/v1/rigs/{rig}/estop", { rig }, STOP),
+
+  runs: () => request("get", "/api/v1/runs", {}, READ),
+  run: (run: string) => request("get", "/api/v1/runs/{run}", { run }, READ),
+  exportUrl: (run: string, format: ExportFormat) => pathTo("/api/v1/runs/{run}/export", { run }, { format }),
+
+  /** Shows a plan's pose as a ghost beside the rig; null takes it away, also from a page that is being left. */
+  scenePose: (rig: string, body: ScenePoseAt | null) =>
+    request("post", "/api/v1/rigs/{rig}/scene/pose", { rig }, { ...READ, body, keepalive: body === null }),
+
+  streamUrl: (rig: string) => socketTo("/api/v1/rigs/{rig}/stream", { rig }),
+  replayUrl: (run: string) => socketTo("/api/v1/runs/{run}/stream", { run }),
+};
+
+export type Api = typeof api;

@@ -1,0 +1,39 @@
+/** Refusals of the server, and answers that did not come. */
+import type { Problem } from "../contract/types";
+
+/** A refusal of the server, or no answer at all (status 0). */
+export class ApiError extends Error {
+  override name = "ApiError";
+  constructor(
+    readonly status: number,
+    message: string,
+    /** What is wrong with the request, where the server says so. */
+    readonly errors: Problem["errors"] = [],
+  ) {
+    super(message);
+  }
+}
+
+/** What a person reads of an error: the detail, and where in the file or the request it is. */
+export function messageOf(error: unknown): string {
+  if (!(error instanceof ApiError)) return error instanceof Error ? error.message : String(error);
+  const first = error.errors[0];
+  if (!first || error.message.includes(first.message)) return error.message;
+  const line = first.line ? `line ${first.line}, ` : "";
+  return `${error.message} (${line}${first.where}: ${first.message})`;
+}
+
+/** What a refused request says: its problem document. A proxy's page is none: the status is all there is to say. */
+export function refusal(status: number, body: string): ApiError {
+  try {
+    const problem = JSON.parse(body) as Partial<Problem> | null;
+    if (typeof problem?.detail === "string") return new ApiError(status, problem.detail, problem.errors ?? []);
+  } catch {
+    // not JSON
+  }
+  return new ApiError(status, `The server answered ${status}`);
+}
+
+export function silence(): ApiError {
+  return new ApiError(0, "The server does not answer");
+}
