@@ -1,7 +1,9 @@
 import { svelte } from "@sveltejs/vite-plugin-svelte";
+import { svelteTesting } from "@testing-library/svelte/vite";
 import { defineConfig } from "vitest/config";
 
+// A component's test asks for a document of its own: `@vitest-environment happy-dom` in its first line.
 export default defineConfig({
-  plugins: [svelte()],
+  plugins: [svelte(), svelteTesting()],
   test: { include: ["src/**/*.test.ts"], environment: "node", passWithNoTests: false },
 });

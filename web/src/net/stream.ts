@@ -55,8 +55,11 @@ export interface Listener {
   replayed?: (where: Replayed) => void;
 }
 
+/** What an opened stream is told. */
+export type Connection = Pick<Stream, "close" | "control">;
+
 /** Opens the stream at a URL; `helloMs` is how long the server may take to say hello. */
-export type Connect = (url: string, listener: Listener, helloMs?: number) => Stream;
+export type Connect = (url: string, listener: Listener, helloMs?: number) => Connection;
 
 export const connect: Connect = (url, listener, helloMs) => new Stream(url, listener, BROWSER, 30, "binary", helloMs);
 

@@ -243,6 +243,17 @@ export function ranked(methods: readonly MethodFigures[]): MethodFigures[] {
   return [...methods].sort((a, b) => rank(a) - rank(b));
 }
 
+const STATUSES: Record<Comparison["status"], { word: string; tone: "active" | "danger" | "" }> = {
+  queued: { word: "Queued", tone: "active" },
+  running: { word: "Comparing", tone: "active" },
+  done: { word: "Done", tone: "" },
+  failed: { word: "Failed", tone: "danger" },
+  cancelled: { word: "Cancelled", tone: "" },
+  interrupted: { word: "Interrupted", tone: "" },
+};
+
+export const statusOf = (status: Comparison["status"]): { word: string; tone: string } => STATUSES[status];
+
 /** One line on what came out of it. */
 export function summaryOf({ report }: Pick<Comparison, "report">): string {
   if (!report) return "";

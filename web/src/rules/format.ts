@@ -55,3 +55,8 @@ export function integer(value: number | null | undefined): string {
 export function clockTime(seconds: number): string {
   return new Date(seconds * 1000).toLocaleTimeString([], { hour12: false });
 }
+
+/** Date and time here, of a time as the server writes it; with seconds where they tell one from another. */
+export function dateTime(written: string, seconds = false): string {
+  return new Date(written).toLocaleString([], { dateStyle: "medium", timeStyle: seconds ? "medium" : "short" });
+}

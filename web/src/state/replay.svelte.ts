@@ -2,7 +2,7 @@
 import type { ReplayOf } from "../contract/types";
 import { History } from "../net/history";
 import { NO_LINK, reduce, type Link } from "../net/link";
-import { RECORD_MS, type Connect, type Listener, type Stream } from "../net/stream";
+import { RECORD_MS, type Connect, type Connection, type Listener } from "../net/stream";
 import { sampleAt, type Batch, type Sample } from "../net/telemetry";
 import type { TimeAxis } from "../rules/axis";
 import type { Feed } from "./feed";
@@ -25,7 +25,7 @@ export class Replay implements Feed {
   readonly stale = false;
 
   readonly history = new History(HISTORY);
-  readonly #stream: Stream;
+  readonly #stream: Connection;
   #opened = false;
   #sought = false;
 

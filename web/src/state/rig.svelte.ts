@@ -4,7 +4,7 @@ import type { Api } from "../net/api";
 import { messageOf } from "../net/errors";
 import { History } from "../net/history";
 import { NO_LINK, reduce, type Link, type LinkEvent } from "../net/link";
-import type { Connect, Stream } from "../net/stream";
+import type { Connect, Connection } from "../net/stream";
 import { sampleAt, type Batch, type Sample } from "../net/telemetry";
 import type { TimeAxis } from "../rules/axis";
 import { dataAgeMs, freshness, looksStale, type Freshness } from "../rules/freshness";
@@ -43,7 +43,7 @@ export class Operated implements Feed {
   readonly lease: RigLease;
   readonly stops: Stops;
 
-  #stream: Stream | null = null;
+  #stream: Connection | null = null;
   #timers: number[] = [];
 
   constructor(

@@ -1,0 +1,90 @@
+/** Messages as the server sends them, for tests: whole, and ordinary in all that a test does not say. */
+import type { Alarm, Lease, Rig, Snapshot, Trajectory } from "../contract/types";
+import { me } from "../net/identity";
+
+export function leaseOf(holder: string | null, given: Partial<Lease> = {}): Lease {
+  return { holder, epoch: 3, sequence: 0, expires_s: 10, requested_by: [], ...given };
+}
+
+/** Ours. */
+export const ourLease = (given: Partial<Lease> = {}): Lease => leaseOf(me(), given);
+
+export function alarm(given: Partial<Alarm> = {}): Alarm {
+  return {
+    number: 1,
+    code: "rate_limit",
+    severity: "fault",
+    message: "inner is too fast",
+    first: false,
+    count: 1,
+    time_s: 0,
+    ...given,
+  };
+}
+
+export function session(given: Partial<Snapshot> = {}): Snapshot {
+  return {
+    rig: "bench",
+    state: "armed",
+    revision: 1,
+    allowed: ["start", "hold", "move", "jog", "home", "disarm", "acknowledge", "load", "reset"],
+    drive: "simulated",
+    lease: leaseOf(null),
+    plan: null,
+    alarms: [],
+    history: [],
+    pose_deg: null,
+    run_id: null,
+    health: {
+      rig_alive: true,
+      rig_pid: 1,
+      rate_hz: 1000,
+      ticks: 1,
+      busy_us: 1,
+      deadline_misses: 0,
+      heartbeat_age_s: 0,
+      lateness_us: { p50: 1, p99: 2, p999: 3, max: 4 },
+      realtime: "SCHED_FIFO",
+      recorder: null,
+    },
+    ...given,
+  };
+}
+
+const LIMITS = {
+  min_deg: -170,
+  max_deg: 170,
+  max_rate_deg_s: 200,
+  max_acceleration_deg_s2: 500,
+  weight: 1,
+  home_deg: 0,
+};
+
+export const RIG: Rig = {
+  name: "bench",
+  geometry: "vertical-4",
+  redundant: true,
+  builtin: false,
+  rig_hash: "0",
+  frames: { base: LIMITS, outer: LIMITS, middle: LIMITS, inner: LIMITS },
+  payload: {},
+  state: "armed",
+  scene: "/scene/bench/",
+};
+
+export const FLIGHT: Trajectory = {
+  sha256: "f",
+  name: "loop",
+  convention: "nue",
+  created_at: "2026-11-01T12:00:00Z",
+  duration_s: 10,
+  samples: 1001,
+  rate_hz: 100,
+  uniform: true,
+  start_s: 0,
+  peak_body_rate_deg_s: 50,
+  source_bytes: 1000,
+  source_format: "csv",
+  source_sha256: "s",
+  warnings: [],
+};
