@@ -15,11 +15,14 @@ export type ExportFormat = NonNullable<
 >;
 /** A flight's file as a form. */
 export type FlightForm = paths["/api/v1/trajectories"]["post"]["requestBody"]["content"]["multipart/form-data"];
+/** One frame's limits in degrees; null for no limit. */
+export type FrameLimits = Omit<Schemas["FrameOut"], "weight">;
 export type FrameName = keyof Schemas["FramesOut"];
 export type Health = Schemas["HealthOut"];
 export type Lease = Schemas["LeaseOut"];
 export type LeaseAction = Schemas["LeaseIn"]["action"];
 export type LeaseToken = Schemas["LeaseToken"];
+export type LimitName = Schemas["BlockingOut"]["limit"];
 export type LiveHealth = Schemas["LiveOut"];
 export type Method = Schemas["MethodOut"];
 export type MethodFigures = Schemas["MethodFiguresOut"];

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { NO_LINK, type Link } from "../net/link";
-import { dataAgeMs, freshness, LATE_MS, looksStale, STALE_MS } from "./freshness";
+import { dataAgeMs, freshness, LATE_MS, looksStale, STALE_MS, vitality } from "./freshness";
 
 const OPEN: Link = { ...NO_LINK, phase: "open", ageAtSendMs: 3, receivedAtMs: 1000, roundTripMs: 8 };
 
@@ -61,4 +61,13 @@ describe("what is on the screen", () => {
   it("does not for a rig without a drive, which has no data", () => {
     expect(looksStale({ ...OPEN, ...session("disconnected") }, "stale")).toBe(false);
   });
+});
+
+it("has a word for how the stream does", () => {
+  const open: Link = { ...NO_LINK, phase: "open", receivedAtMs: 0 };
+  expect(vitality(open, "fresh")).toEqual({ tone: "good", word: "Live" });
+  expect(vitality(open, "late")).toEqual({ tone: "caution", word: "Late" });
+  expect(vitality(open, "stale")).toEqual({ tone: "danger", word: "Stale" });
+  expect(vitality({ ...open, receivedAtMs: null }, "stale")).toEqual({ tone: "none", word: "No data" });
+  expect(vitality({ ...open, phase: "closed" }, "stale")).toEqual({ tone: "danger", word: "Offline" });
 });

@@ -21,6 +21,19 @@ export function freshness(link: Link, nowMs: number): Freshness {
   return age > LATE_MS ? "late" : "fresh";
 }
 
+export interface Vitality {
+  tone: "good" | "caution" | "danger" | "none";
+  word: string;
+}
+
+/** How the stream does, in a word. An open link that has brought nothing yet is of a rig without a drive. */
+export function vitality(link: Link, fresh: Freshness): Vitality {
+  if (link.phase !== "open") return { tone: "danger", word: "Offline" };
+  if (link.receivedAtMs === null) return { tone: "none", word: "No data" };
+  if (fresh === "fresh") return { tone: "good", word: "Live" };
+  return fresh === "late" ? { tone: "caution", word: "Late" } : { tone: "danger", word: "Stale" };
+}
+
 /** Whether what is on the screen is to look old. A rig without a drive, on an open link, has no data to be old. */
 export function looksStale(link: Link, fresh: Freshness): boolean {
   if (link.session === null) return false;

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { dataRange, extent, limitRange, nearness, positionLimits, rateLimits, used, type FrameLimits } from "./limits";
+import type { FrameLimits } from "../contract/types";
+import { dataRange, extent, limitRange, nearness, positionLimits, rateLimits, used } from "./limits";
 
 const FRAME: FrameLimits = {
   min_deg: -60,

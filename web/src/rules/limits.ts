@@ -1,13 +1,6 @@
 /** Limits as they are drawn: the range of an axis, and how near a value is. */
 
-/** One frame's limits in degrees; null for no limit. */
-export interface FrameLimits {
-  min_deg: number | null;
-  max_deg: number | null;
-  max_rate_deg_s: number | null;
-  max_acceleration_deg_s2: number | null;
-  home_deg: number;
-}
+import type { FrameLimits } from "../contract/types";
 
 export type Range = readonly [low: number, high: number];
 

@@ -1,13 +1,12 @@
 /** How near a plan comes to the limits, and what closes its way. */
-import type { FrameName, Plan, PlanMargin } from "../contract/types";
+import type { FrameName, LimitName, Plan, PlanMargin, FrameLimits } from "../contract/types";
 import { fixed, scientific } from "./format";
-import { positionLimits, type FrameLimits } from "./limits";
-
-export type LimitName = "position" | "rate" | "acceleration";
+import { positionLimits } from "./limits";
 
 export const LIMITS: readonly LimitName[] = ["position", "rate", "acceleration"];
 export const UNITS: Record<LimitName, string> = { position: "deg", rate: "deg/s", acceleration: "deg/s²" };
-const KEYS = { position: "position_deg", rate: "rate_deg_s", acceleration: "acceleration_deg_s2" } as const;
+/** What the wire calls each of them, of margins and of peaks. */
+export const KEYS = { position: "position_deg", rate: "rate_deg_s", acceleration: "acceleration_deg_s2" } as const;
 
 /** Differences of sampled angles reach a limit to this share of it and are still inside [of the limit]. */
 const TOLERANCE = 1e-6;

@@ -1,6 +1,5 @@
 /** A rig's frames as the console lists them. */
-import { FRAMES, type FrameName, type Rig } from "../contract/types";
-import type { FrameLimits } from "./limits";
+import { FRAMES, type FrameName, type Rig, type FrameLimits } from "../contract/types";
 
 export interface RigFrame {
   name: FrameName;

@@ -1,15 +1,22 @@
 /** The session as the console draws it: the order of the states, and what each is called. */
 
+import type { StateName } from "../contract/types";
+
 export type Tone = "quiet" | "ready" | "active" | "caution" | "danger";
 
 export interface StateLook {
-  name: string;
+  name: StateName;
   label: string;
   tone: Tone;
   meaning: string;
 }
 
-const look = (name: string, label: string, tone: Tone, meaning: string): StateLook => ({ name, label, tone, meaning });
+const look = (name: StateName, label: string, tone: Tone, meaning: string): StateLook => ({
+  name,
+  label,
+  tone,
+  meaning,
+});
 
 /** The way of a run, from left to right. */
 export const PATH: readonly StateLook[] = [
@@ -30,8 +37,14 @@ export const ASIDE: readonly StateLook[] = [
   look("estopped", "E-stopped", "danger", "Emergency stop; acknowledge, then reset"),
 ];
 
-const LOOKS = new Map([...PATH, ...ASIDE].map((state) => [state.name, state]));
+const LOOKS: ReadonlyMap<string, StateLook> = new Map([...PATH, ...ASIDE].map((state) => [state.name, state]));
 
-export function lookOf(state: string): StateLook {
-  return LOOKS.get(state) ?? look(state, state, "quiet", "");
+/** A state that this console does not know, of a newer server, is shown by its name. */
+export function lookOf(state: string): Omit<StateLook, "name"> {
+  return LOOKS.get(state) ?? { label: state, tone: "quiet", meaning: "" };
+}
+
+/** The tone of a tag that names a state: one that asks for nothing has none. */
+export function tagTone({ tone }: Pick<StateLook, "tone">): "active" | "caution" | "danger" | "" {
+  return tone === "quiet" || tone === "ready" ? "" : tone;
 }

@@ -1,11 +1,13 @@
 /** A Stop or an E-stop that was not answered, and what tells that it came through all the same. */
 
+import type { StateName } from "../contract/types";
+
 export type Urgent = "stop" | "estop";
 
 export const NAMES: Record<Urgent, string> = { stop: "Stop", estop: "E-stop" };
 
 /** States that a Stop leads out of. */
-const STOPPABLE = new Set(["positioning", "running", "held", "live"]);
+const STOPPABLE: ReadonlySet<string> = new Set<StateName>(["positioning", "running", "held", "live"]);
 
 /** Whether a state that was heard of after the press shows that there is nothing left to press for. */
 export function settled(what: Urgent, state: string): boolean {

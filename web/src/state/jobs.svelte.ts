@@ -1,4 +1,5 @@
 /** Jobs of the server: their list, read again while any of them is under way. */
+import type { Plan } from "../contract/types";
 import { ApiError, messageOf } from "../net/errors";
 import { backoffMs } from "../net/stream";
 
@@ -8,7 +9,7 @@ export interface Job {
 }
 
 const POLL_MS = 250;
-const UNFINISHED = new Set(["queued", "running"]);
+const UNFINISHED: ReadonlySet<string> = new Set<Plan["status"]>(["queued", "running"]);
 
 export const unfinished = (job: Pick<Job, "status">): boolean => UNFINISHED.has(job.status);
 
