@@ -33,7 +33,13 @@ ANSWERED = {
     "LiveMessageOut": (LiveOpened, LiveReplyOut, LiveProblem),
 }
 # Which of them each WebSocket speaks, by the name of its route.
-SPOKEN = {"stream": "Stream", "replay_stream": "Stream", "solve_stream": "Solve", "live": "Live"}
+SPOKEN = {
+    "stream": "Stream",
+    "replay_stream": "Stream",
+    "solve_stream": "Solve",
+    "live": "Live",
+    "stop_channel": "Stop",
+}
 MESSAGES = (*chain.from_iterable(SENT.values()), TrajectoryIn, SolveIn)
 ANSWERS = (Problem, *chain.from_iterable(ANSWERED.values()))
 

@@ -4515,6 +4515,7 @@ export interface sockets {
     "/api/v1/rigs/{rig}/stream": { sent: components["schemas"]["StreamMessageIn"]; answered: components["schemas"]["StreamMessageOut"] };
     "/api/v1/runs/{run}/stream": { sent: components["schemas"]["StreamMessageIn"]; answered: components["schemas"]["StreamMessageOut"] };
     "/api/v1/solve": { sent: components["schemas"]["SolveMessageIn"]; answered: components["schemas"]["SolveMessageOut"] };
+    "/api/v1/stop": { sent: components["schemas"]["StopMessageIn"]; answered: components["schemas"]["StopMessageOut"] };
 }
 export interface flags {
     late: 1;
