@@ -53,10 +53,36 @@ def solve_symmetric(A: Array, b: Array, n: int) -> bool:
 
 
 @inlined
+def gram(J: Array) -> tuple[float, ...]:
+    """J J^T, J (3, 4): its upper triangle, row by row."""
+    a00 = a01 = a02 = a11 = a12 = a22 = 0.0
+    for i in range(4):
+        a00 += J[0, i] * J[0, i]
+        a01 += J[0, i] * J[1, i]
+        a02 += J[0, i] * J[2, i]
+        a11 += J[1, i] * J[1, i]
+        a12 += J[1, i] * J[2, i]
+        a22 += J[2, i] * J[2, i]
+    return a00, a01, a02, a11, a12, a22
+
+
+@inlined
+def adjugate(a00: float, a01: float, a02: float, a11: float, a12: float, a22: float) -> tuple[float, ...]:
+    """The adjugate of a symmetric 3x3 matrix, its upper triangle row by row, and the determinant."""
+    c00 = a11 * a22 - a12 * a12
+    c01 = a02 * a12 - a01 * a22
+    c02 = a01 * a12 - a02 * a11
+    c11 = a00 * a22 - a02 * a02
+    c12 = a01 * a02 - a00 * a12
+    c22 = a00 * a11 - a01 * a01
+    return c00, c01, c02, c11, c12, c22, a00 * c00 + a01 * c01 + a02 * c02
+
+
+@inlined
 def least_norm(J: Array, weight: Array, g: Array, e: Array, damping: float, p: Array) -> None:
     """p <- g + W^-1 J^T (J W^-1 J^T + damping I)^-1 (e - J g), the step of least weighted distance from g.
 
-    J (3, 4); weight, g, p (4,); e (3,). The 3x3 inverse is the adjugate's.
+    J (3, 4); weight, g, p (4,); e (3,).
     """
     a00 = damping
     a01 = 0.0
@@ -81,13 +107,8 @@ def least_norm(J: Array, weight: Array, g: Array, e: Array, damping: float, p: A
         r0 -= j0 * g[i]
         r1 -= j1 * g[i]
         r2 -= j2 * g[i]
-    c00 = a11 * a22 - a12 * a12
-    c01 = a02 * a12 - a01 * a22
-    c02 = a01 * a12 - a02 * a11
-    c11 = a00 * a22 - a02 * a02
-    c12 = a01 * a02 - a00 * a12
-    c22 = a00 * a11 - a01 * a01
-    scale = 1.0 / (a00 * c00 + a01 * c01 + a02 * c02)
+    c00, c01, c02, c11, c12, c22, determinant = adjugate(a00, a01, a02, a11, a12, a22)
+    scale = 1.0 / determinant
     y0 = scale * (c00 * r0 + c01 * r1 + c02 * r2)
     y1 = scale * (c01 * r0 + c11 * r1 + c12 * r2)
     y2 = scale * (c02 * r0 + c12 * r1 + c22 * r2)

@@ -29,7 +29,7 @@ from fullpose._typing import Array
 from fullpose.bounds import EXACT
 from fullpose.charts import base_chart, nearest
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
-from fullpose.least_squares import solve_symmetric
+from fullpose.least_squares import gram, solve_symmetric
 from fullpose.limits import WEIGHT
 from fullpose.methods.base import StepMethod, Stepper
 from fullpose.methods.block import BlockStepper, block_kernel, record_of
@@ -65,19 +65,7 @@ def smallest_singular_value(J: Array) -> float:
 
     Right to about 1e-8, the root of rounding, next to zero: the damping asks for no more.
     """
-    a00 = 0.0
-    a01 = 0.0
-    a02 = 0.0
-    a11 = 0.0
-    a12 = 0.0
-    a22 = 0.0
-    for i in range(4):
-        a00 += J[0, i] * J[0, i]
-        a01 += J[0, i] * J[1, i]
-        a02 += J[0, i] * J[2, i]
-        a11 += J[1, i] * J[1, i]
-        a12 += J[1, i] * J[2, i]
-        a22 += J[2, i] * J[2, i]
+    a00, a01, a02, a11, a12, a22 = gram(J)
     mean = (a00 + a11 + a22) / 3.0
     b00 = a00 - mean
     b11 = a11 - mean

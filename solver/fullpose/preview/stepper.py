@@ -38,6 +38,7 @@ from fullpose.preview.options import PreviewOptions
 from fullpose.preview.prediction import Track
 from fullpose.preview.replan import FIT_WINDOW, Ahead, Replan
 from fullpose.rig import Rig
+from fullpose.trajectory.curve import hermite
 from fullpose.trajectory.nodes import empty_nodes, fill_nodes, node_grid
 
 START_GRID = 60  # nodes a turn among which a free start is chosen
@@ -47,7 +48,8 @@ START_GRID = 60  # nodes a turn among which a free start is chosen
 def follow(flight: Flight, way_time: Array, way_pose: Array, way_rate: Array, omega: float) -> bool:
     """increment <- the one that follows the way over the interval ahead; false where it does not reach so far.
 
-    Critically damped, bandwidth omega [1/s], by the implicit Euler step, which is stable for any interval.
+    Critically damped, bandwidth omega [1/s], by the implicit Euler step, which is stable for any interval. way_time
+    (k,) [s] evenly spaced, way_pose, way_rate (k, 4) [rad], [rad/s].
     """
     h = flight.ahead
     t = flight.clock + h
@@ -57,17 +59,12 @@ def follow(flight: Flight, way_time: Array, way_pose: Array, way_rate: Array, om
     j = min(int((t - way_time[0]) / (way_time[1] - way_time[0])), last - 1)
     span = way_time[j + 1] - way_time[j]
     s = (t - way_time[j]) / span
-    a = 1.0 - s
     stiffness = h * omega * omega
     damping = 2.0 * omega
     for i in range(4):
-        p0 = way_pose[j, i]
-        rise = way_pose[j + 1, i] - p0
-        bend0 = way_rate[j, i] * span - rise
-        bend1 = rise - way_rate[j + 1, i] * span
-        p = p0 + s * rise + s * a * (a * bend0 + s * bend1)
-        v = (rise + (1.0 - 2.0 * s) * (a * bend0 + s * bend1) + s * a * (bend1 - bend0)) / span
-        v_2 = (2.0 * (1.0 - 2.0 * s) * (bend1 - bend0) - 2.0 * (a * bend0 + s * bend1)) / (span * span)
+        rise = way_pose[j + 1, i] - way_pose[j, i]
+        off_chord, v, v_2 = hermite(rise, way_rate[j, i], way_rate[j + 1, i], span, s)
+        p = way_pose[j, i] + s * rise + off_chord
         if flight.phase == MOVING:
             rate = flight.rate[i] + h * (v_2 + omega * omega * (p - flight.pose[i]) + damping * v)
             flight.increment[i] = h * rate / (1.0 + h * damping + h * stiffness)

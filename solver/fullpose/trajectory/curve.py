@@ -10,10 +10,11 @@ import math
 import numpy as np
 from scipy.linalg import solveh_banded
 
-from fullpose._jit import kernel
+from fullpose._jit import inlined, kernel
 from fullpose._typing import Array, Integers
 from fullpose.charts import project
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
+from fullpose.least_squares import adjugate, gram
 
 DAMPING = 1e-14  # least damping of the projection: rounding may move a singular pose by 1e-9 rad, no more
 LOCKED = 1e-4  # [rad] a frame with a range below does not move: the others follow from it
@@ -37,26 +38,10 @@ def closest(axes: Integers, C: Array, d: Array) -> float:
         if size < 4e-16 or (iteration > 2 and size < 4e-15):
             break
         jacobian(axes, d, J)
-        # (J J^T + damping) y = -e, 3x3 symmetric, by cofactors
+        # (J J^T + damping) y = -e
         damping = max(DAMPING, 0.1 * size * size)
-        a = b = c = p = q = r = 0.0
-        for k in range(4):
-            a += J[0, k] * J[0, k]
-            b += J[1, k] * J[1, k]
-            c += J[2, k] * J[2, k]
-            p += J[0, k] * J[1, k]
-            q += J[0, k] * J[2, k]
-            r += J[1, k] * J[2, k]
-        a += damping
-        b += damping
-        c += damping
-        c00 = b * c - r * r
-        c01 = q * r - p * c
-        c02 = p * r - q * b
-        det = a * c00 + p * c01 + q * c02
-        c11 = a * c - q * q
-        c12 = p * q - a * r
-        c22 = a * b - p * p
+        a00, a01, a02, a11, a12, a22 = gram(J)
+        c00, c01, c02, c11, c12, c22, det = adjugate(a00 + damping, a01, a02, a11 + damping, a12, a22 + damping)
         y0 = -(c00 * e[0] + c01 * e[1] + c02 * e[2]) / det
         y1 = -(c01 * e[0] + c11 * e[1] + c12 * e[2]) / det
         y2 = -(c02 * e[0] + c12 * e[1] + c22 * e[2]) / det
@@ -173,6 +158,21 @@ def smoothed(y: Array, stiffness: float) -> Array:
     return np.asarray(solveh_banded(bands, y, check_finite=False))
 
 
+@inlined
+def hermite(rise: float, slope0: float, slope1: float, h: float, s: float) -> tuple[float, float, float]:
+    """The cubic with slopes slope0, slope1 at the ends of an interval h, which goes up by `rise` there, at s in [0, 1].
+
+    Returns (how far it is off the chord, its first and its second derivative).
+    """
+    a = 1.0 - s
+    bend0 = slope0 * h - rise
+    bend1 = rise - slope1 * h
+    bend = a * bend0 + s * bend1
+    first = (rise + (1.0 - 2.0 * s) * bend + s * a * (bend1 - bend0)) / h
+    second = (2.0 * (1.0 - 2.0 * s) * (bend1 - bend0) - 2.0 * bend) / (h * h)
+    return s * a * bend, first, second
+
+
 @kernel
 def spline_rows(knots: Array, y: Array, slope: Array, time: Array, out: Array) -> None:
     """out <- the cubic Hermite curve through (knots, y) with the slopes given, at `time` (increasing)."""
@@ -185,10 +185,8 @@ def spline_rows(knots: Array, y: Array, slope: Array, time: Array, out: Array) -
         s = (time[k] - knots[j]) / h
         a = 1.0 - s
         for i in range(y.shape[1]):
-            rise = y[j + 1, i] - y[j, i]
-            bend0 = slope[j, i] * h - rise
-            bend1 = rise - slope[j + 1, i] * h
-            out[k, i] = a * y[j, i] + s * y[j + 1, i] + s * a * (a * bend0 + s * bend1)
+            off_chord, _, _ = hermite(y[j + 1, i] - y[j, i], slope[j, i], slope[j + 1, i], h, s)
+            out[k, i] = a * y[j, i] + s * y[j + 1, i] + off_chord
 
 
 def spline_slopes(knots: Array, y: Array) -> Array:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from fullpose.kinematics import jacobian, null_vector
 from fullpose.rig import builtin_rigs
@@ -10,6 +10,7 @@ from fullpose.trajectory.bspline import FEW, spline_basis
 from fullpose.trajectory.curve import (
     closest,
     closest_all,
+    hermite,
     null_vectors,
     polish,
     smoothed,
@@ -95,3 +96,15 @@ def test_basis_is_a_partition_of_unity_and_shares_functions_from_sample_to_sampl
     assert (np.diff(basis.first) >= 0).all()
     assert (np.diff(basis.first) <= 1).all()
     assert basis.first[-1] + 4 <= basis.size
+
+
+def test_hermite_and_its_derivatives_against_scipy():
+    random = np.random.default_rng(6)
+    for _ in range(20):
+        (y0, y1, v0, v1), h = random.normal(size=4), random.uniform(0.1, 2.0)
+        spline = CubicHermiteSpline([0.0, h], [y0, y1], [v0, v1])
+        for s in (0.0, 0.3, 1.0):
+            off_chord, first, second = hermite(y1 - y0, v0, v1, h, s)
+            assert y0 + s * (y1 - y0) + off_chord == pytest.approx(spline(s * h), abs=1e-12)
+            assert first == pytest.approx(spline(s * h, 1), abs=1e-11)
+            assert second == pytest.approx(spline(s * h, 2), abs=1e-10)
