@@ -23,13 +23,13 @@ def bad_time(time: Array, before: float | None = None) -> tuple[int, str] | None
         row = int(np.argmax(far))
         span = f"seconds between {-FARTHEST:g} and {FARTHEST:g}"
         return row, span if np.isfinite(time[row]) else "a finite number"
-    whole = time if before is None else np.concatenate([[before], time])
-    steps = np.diff(whole)
-    short = steps < SHORTEST_STEP
-    if not short.any():
+    times = time if before is None else np.concatenate([[before], time])
+    steps = np.diff(times)
+    tight = steps < SHORTEST_STEP
+    if not tight.any():
         return None
-    k = int(np.argmax(short))
-    row, last = k + 1 - (whole.size - time.size), shortest(whole[k])
+    k = int(np.argmax(tight))
+    row, last = k + 1 - (times.size - time.size), shortest(times[k])
     if steps[k] > 0.0:
         return row, f"a time at least {SHORTEST_STEP:g} s after {last}"
     why = "this one is there twice" if steps[k] == 0.0 else "time must not go backward"

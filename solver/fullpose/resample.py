@@ -41,7 +41,7 @@ class Resampled:
     q: Array  # (n, 4) w, x, y, z, reference to body, unit, continuous
     body_rate: Array  # (n, 3) [rad/s] in body axes, the derivative of the same spline
     choice: Choice
-    note: str  # the choice in words, with what to mind
+    sentence: str  # the choice in words, with what to mind
 
     def __post_init__(self) -> None:
         for name in ("time", "q", "body_rate"):
@@ -70,13 +70,17 @@ def resample(time: Array, q: Array, rate_hz: float) -> Resampled:
     grid[-1] = min(grid[-1], time[-1])
     q_grid, rate = _spline(time, q, grid)
     mean_rate = (time.size - 1) / (time[-1] - time[0])
-    note = f"{time.size} samples at {mean_rate:.4g} Hz on average, quaternion spline to {grid.size} at {rate_hz:g} Hz"
+    sentence = (
+        f"{time.size} samples at {mean_rate:.4g} Hz on average, quaternion spline to {grid.size} at {rate_hz:g} Hz"
+    )
     if mean_rate > rate_hz * (1.0 + ON_GRID):
-        note += "; the flight is sampled faster than the rig, what lies between its samples is left out"
+        sentence += "; the flight is sampled faster than the rig, what lies between its samples is left out"
     widest = _largest_step(q)
     if widest > LARGEST_STEP:
-        note += f"; neighbouring samples up to {math.degrees(widest):.0f} deg apart, the way between them is a guess"
-    return Resampled(grid, q_grid, rate, Choice.SPLINE, note)
+        sentence += (
+            f"; neighbouring samples up to {math.degrees(widest):.0f} deg apart, the way between them is a guess"
+        )
+    return Resampled(grid, q_grid, rate, Choice.SPLINE, sentence)
 
 
 def check_length(duration_s: float, rate_hz: float) -> None:

@@ -105,18 +105,18 @@ def verify(time: ArrayLike, angles: ArrayLike, rig: Rig, attitude: ArrayLike | N
                 continue
             peaks[frame, limit] = np.abs(value).max()
             if limit == 0:
-                excess = np.maximum(limits.min - value, value - limits.max) - POSITION_TOLERANCE
+                violation = np.maximum(limits.min - value, value - limits.max) - POSITION_TOLERANCE
             else:
-                excess = np.abs(value) - (limits.max_rate, limits.max_acceleration)[limit - 1] * (1.0 + TOLERANCE)
-            violations += _runs(when, value, excess, FRAMES[frame], LIMITS[limit])
+                violation = np.abs(value) - (limits.max_rate, limits.max_acceleration)[limit - 1] * (1.0 + TOLERANCE)
+            violations += _runs(when, value, violation, FRAMES[frame], LIMITS[limit])
     violations.sort(key=lambda violation: violation.time)
     return Verification(max_error, max_matrix_error, peaks, tuple(violations))
 
 
-def _runs(time: Array, value: Array, excess: Array, frame: Frame, limit: Limit) -> list[Violation]:
-    over = np.flatnonzero(excess > 0.0)
-    runs = np.split(over, np.flatnonzero(np.diff(over) > 1) + 1) if over.size else []
-    worst = [int(run[np.argmax(excess[run])]) for run in runs]
+def _runs(time: Array, value: Array, violation: Array, frame: Frame, limit: Limit) -> list[Violation]:
+    outside = np.flatnonzero(violation > 0.0)
+    runs = np.split(outside, np.flatnonzero(np.diff(outside) > 1) + 1) if outside.size else []
+    peaks = [int(run[np.argmax(violation[run])]) for run in runs]
     return [
-        Violation(float(time[k]), frame, limit, float(value[k]), len(run)) for k, run in zip(worst, runs, strict=True)
+        Violation(float(time[k]), frame, limit, float(value[k]), len(run)) for k, run in zip(peaks, runs, strict=True)
     ]

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fullpose_server.runtime.recording.mcap_reader import is_whole, read_samples, recover_messages
+from fullpose_server.runtime.recording.mcap_reader import is_complete, read_samples, recover_messages
 from tests.fullpose_server.runtime.rigs import codes_of, config_of, hosted, plan_of, within_limits, written
 
 # Setting the real clock would reach every process of the machine. In the processes of the rig, which begin with this
@@ -51,7 +51,7 @@ def test_a_clock_that_is_set_in_flight_disturbs_nothing(tmp_path: Path, monkeypa
             rows, _ = host.samples(0, 1 << 20)
             within_limits(rows, host)
         (record,) = (tmp_path / "runs").iterdir()
-        assert is_whole(record)
+        assert is_complete(record)
         kept = read_samples(record)
         assert (np.diff(kept["seq"].astype(np.int64)) == 1).all()
         steps = np.diff(kept["wall_ns"]) / 1e9

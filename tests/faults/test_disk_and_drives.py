@@ -17,7 +17,7 @@ from fullpose_server.drives.packet import Order
 from fullpose_server.formats.plan_folder import PlanFolder, PlanInfo, plan_hash
 from fullpose_server.runtime.contract.config import GuardConfig, RigConfig, Tolerance
 from fullpose_server.runtime.recording.export import repair
-from fullpose_server.runtime.recording.mcap_reader import is_whole, read_events, read_samples
+from fullpose_server.runtime.recording.mcap_reader import is_complete, read_events, read_samples
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.states import STATES
 from tests.fullpose_server.drives.relay import Relay, relay
@@ -63,13 +63,13 @@ def test_a_disk_that_fills_up_in_flight_costs_the_record_and_not_the_flight(tmp_
             assert refused.error is not None
             assert refused.error.code == "disk_full"
         (record,) = runs.iterdir()  # noqa: ASYNC240
-        assert not is_whole(record)
+        assert not is_complete(record)
         kept = read_samples(record)
         assert len(kept) > 1000
         assert (np.diff(kept["seq"].astype(int)) == 1).all()
         whole = tmp_path / "whole.mcap"
         assert repair(record, whole) >= len(kept)
-        assert is_whole(whole)
+        assert is_complete(whole)
         np.testing.assert_array_equal(read_samples(whole)["seq"], kept["seq"])
 
     with small_disk(tmp_path / "disk", 1024) as runs:
@@ -117,7 +117,7 @@ def test_a_failing_drive_is_named_and_the_rig_brakes(
                 assert moving.max() < 1.0
         (record,) = (tmp_path / "runs").iterdir()
         assert code in [e.get("code") for e in read_events(record) if e["kind"] == "alarm"]
-        assert is_whole(record)
+        assert is_complete(record)
 
     asyncio.run(fly())
 

@@ -30,7 +30,7 @@ def test_sparse_samples_go_through_the_spline() -> None:
     dense_time, dense = random_flight(2, 5.0, 1000.0, 1.0)
     out = resample(dense_time[::10], dense[::10], 1000.0)
     assert out.choice is Choice.SPLINE
-    assert "100 Hz" in out.note
+    assert "100 Hz" in out.sentence
     np.testing.assert_allclose(out.time, dense_time, atol=1e-12)
     assert geodesic(out.q[200:-200], dense[200:-200]).max() < 1e-8
     np.testing.assert_allclose(geodesic(out.q[::10], dense[::10]), 0.0, atol=1e-12)
@@ -68,12 +68,12 @@ def test_uneven_and_denser_samples() -> None:
     uniform = SCENARIOS["large_no_limit"]
     np.testing.assert_allclose(out.time, uniform.time, atol=1e-12)
     assert geodesic(out.q, uniform.quaternion)[20:-20].max() < 1e-12  # the ends: SciPy's end condition
-    assert "left out" in resample(uniform.time, uniform.quaternion, 100.0).note
+    assert "left out" in resample(uniform.time, uniform.quaternion, 100.0).sentence
 
 
 def test_a_wide_gap_is_said() -> None:
     q = Rotation.from_rotvec([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 0.0, 0.0]]).as_quat(scalar_first=True)
-    assert "115 deg apart" in resample(np.array([0.0, 1.0, 2.0]), q, 100.0).note
+    assert "115 deg apart" in resample(np.array([0.0, 1.0, 2.0]), q, 100.0).sentence
 
 
 @pytest.mark.parametrize("name", ["one_sample", "two_samples"])

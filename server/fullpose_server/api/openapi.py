@@ -89,7 +89,7 @@ def _sockets(routes: Iterable[BaseRoute], prefix: str) -> dict[str, Any]:
     named = {prefix + route.path: SPOKEN[route.name] for route in routes if isinstance(route, APIWebSocketRoute)}
     ends = {"sent": "In", "answered": "Out"}
     return {
-        path: {end: {"$ref": f"#/components/schemas/{spoken}Message{way}"} for end, way in ends.items()}
+        path: {end: {"$ref": f"#/components/schemas/{spoken}Message{sense}"} for end, sense in ends.items()}
         for path, spoken in sorted(named.items())
     }
 

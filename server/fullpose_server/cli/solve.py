@@ -86,8 +86,8 @@ def solve(asked: SolveArguments) -> None:
         fail(f"{flight} is not feasible on {chosen.name} with {method}: {why}{rests}", NOT_FEASIBLE)
     if planned is not None:
         say(f"{flight}: {statement}")
-        if planned.lead_note:
-            say(f"{flight}: a rig cannot fly it from rest to rest: {planned.lead_note}")
+        if planned.lead_refusal:
+            say(f"{flight}: a rig cannot fly it from rest to rest: {planned.lead_refusal}")
     if (missed := why_not_exact(made)) is not None:
         say(f"{flight}: warning: {missed}")
     raise typer.Exit(DONE)

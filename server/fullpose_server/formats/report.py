@@ -98,7 +98,7 @@ def verdict_report(plan: "Plan") -> dict[str, Any]:
         "leads": {
             "lead_in_s": len(plan.lead_in) * first,
             "lead_out_s": len(plan.lead_out) * last,
-            "refusal": plan.lead_note or None,
+            "refusal": plan.lead_refusal or None,
         },
     }
 

@@ -57,7 +57,7 @@ def make_comparison(
     else:
         check_length(float(at[-1] - at[0]), rate_hz, len(asked))
         flight = resample(at, q, rate_hz)
-        at, q, resampling = flight.time, flight.q, flight.note
+        at, q, resampling = flight.time, flight.q, flight.sentence
     attitude = dcm_from_quaternion(q)
     rows = compare(at, attitude, rig, asked, start=start, clock=time.perf_counter, progress=progress)
     if all(row.refusal is not None for row in rows):

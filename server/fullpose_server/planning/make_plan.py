@@ -79,7 +79,7 @@ def _held(moment: Resampled, rate_hz: float) -> Resampled:
         time=moment.time[0] + np.arange(2) / rate_hz,
         q=moment.q.repeat(2, axis=0),
         body_rate=np.zeros((2, 3)),
-        note=f"one sample at {rate_hz:g} Hz, held for one period",
+        sentence=f"one sample at {rate_hz:g} Hz, held for one period",
     )
 
 
@@ -147,8 +147,8 @@ def _remedied(
 
 def _planned(plan: Plan) -> tuple[Array, Array]:
     """The planner's own leads. Raises `MethodError` where there are none."""
-    if plan.lead_note:
-        raise MethodError(plan.lead_note)
+    if plan.lead_refusal:
+        raise MethodError(plan.lead_refusal)
     return plan.lead_in, plan.lead_out
 
 
@@ -181,7 +181,7 @@ def _write(
         "duration_s": folder.info.duration_s,
         "lead_in_s": leads[0] / request.rate_hz,
         "lead_out_s": leads[1] / request.rate_hz,
-        "resampling": flight.note,
+        "resampling": flight.sentence,
     }
 
 

@@ -188,7 +188,7 @@ def least_squares_step(flight: Flight, manipulability: float) -> int:
 
 
 @inner
-def give_way(flight: Flight) -> int:
+def yield_attitude(flight: Flight) -> int:
     """guess <- the pose inside the box with the least attitude error against the goal; returns the code of what binds.
 
     Two Gauss-Newton steps. `EXACT` where no bound holds it back.
@@ -220,7 +220,7 @@ def finish(flight: Flight) -> tuple[int, int]:
     code = EXACT
     if slides == 0:
         missed = outermost_code(flight, flight.next)
-        code = give_way(flight)
+        code = yield_attitude(flight)
         if code == EXACT:
             code = missed  # next to the singularity the frames may be free to move and yet not get there
         # The nearest pose may be exact after all, where it was only the way to it that missed the box.

@@ -25,7 +25,7 @@ FORESIGHT = 5.0  # [s] looked at beyond a piece before it is decided
 FIRST_GRID = math.radians(10.0)  # between the poses that a free start is tried from
 NARROW_GRID = math.radians(1.0)  # the same for a range that the coarse grid may step over
 TURNS_APART = 1.5  # turns from home within which a free start is tried, of frames that have several
-SINGULARITY_COST, RANGE_COST, EXCESS_COST = 0.3, 0.1, 1e3  # [1/s], as `preview` has them but for the range
+SINGULARITY_COST, RANGE_COST, VIOLATION_COST = 0.3, 0.1, 1e3  # [1/s], as `preview` has them but for the range
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def beam_path(stages: Problem, breadth: Breadth, first: Start, progress: Progres
     time, attitude, rig = stages.time, stages.attitude, stages.rig
     n = len(time)
     home = float(stages.options.home_cost)
-    costs = Costs(1.0, breadth.acceleration_cost, SINGULARITY_COST, RANGE_COST, EXCESS_COST, home)
+    costs = Costs(1.0, breadth.acceleration_cost, SINGULARITY_COST, RANGE_COST, VIOLATION_COST, home)
     table = limit_table(rig)
     node_path = np.empty((n, 4))
     begin = 0

@@ -20,7 +20,7 @@ from fullpose.trajectory.windows import Path, smooth_curve
 from fullpose.vocabulary import Decision
 
 STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a node path
-EXCESS = 100.0  # that price: the cost of going over a rate limit by its whole
+VIOLATION_COST = 100.0  # that price: the cost of going over a rate limit by its whole
 WIDENED = 0.5  # [rad] that ranges are widened by where even that finds none
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
 
@@ -112,7 +112,7 @@ def _without_node_path(task: Task, state: State) -> Flown:
 def _least_error(task: Task, state: State) -> tuple[BestEffort, int]:
     """(the least error from the node path that is least over the limits, the node paths refined for it)."""
     problem = task.problem
-    query = replace(state.query, grid=problem.options.grid, stretch=STRETCH, excess=EXCESS)
+    query = replace(state.query, grid=problem.options.grid, stretch=STRETCH, violation_cost=VIOLATION_COST)
     for slack in (0.0, WIDENED):
         node_path, query = cheapest(problem, replace(query, slack=slack), task.told(0.0, 0.5))
         if not node_path.found:

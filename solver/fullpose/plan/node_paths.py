@@ -28,7 +28,7 @@ class Query:
     avoid: tuple[Avoid, ...] = ()
     margin_gain: float = 1.0  # times the price on the singularity
     stretch: float = 1.0  # times the rate limits that an edge may take,
-    excess: float = 0.0  # at this cost of going over one by its whole
+    violation_cost: float = 0.0  # at this cost of going over one by its whole
 
 
 def cheapest(problem: Problem, query: Query, progress: Progress | None) -> tuple[NodePath, Query]:
@@ -64,7 +64,7 @@ def _cheapest_once(problem: Problem, query: Query, progress: Progress | None) ->
     programme.margin_gain = query.margin_gain
     if problem.start is not None and problem.start_rate is not None:
         programme.motion = problem.start, problem.start_rate
-    programme.stretch, programme.excess = query.stretch, query.excess
+    programme.stretch, programme.violation_cost = query.stretch, query.violation_cost
     node_path = programme.run(problem.start, progress)
     if not node_path.found and programme.bounded:  # the verdict rests on all that the limits allow
         programme.everywhere = True

@@ -39,12 +39,12 @@ class Plan:
     lead_in: Array
     lead_out: Array
     node_paths: int  # how many node paths were refined
-    lead_note: str = ""
+    lead_refusal: str = ""
 
     @property
     def ready(self) -> bool:
         """Whether a rig can fly it: feasible, with a way from rest to it and back to rest."""
-        return self.verdict.feasible and not self.lead_note
+        return self.verdict.feasible and not self.lead_refusal
 
 
 def plan(
@@ -121,9 +121,9 @@ def _finished(problem: Problem, flown: Flown, stopwatch: Clock) -> Plan:
         "plan", rig, time, angles, found.error, found.matrix_error, flown.limited, flown.iterations,
         np.full(n, elapsed / n), elapsed, verdict.blocking,
     )  # fmt: skip
-    note = "; ".join(lead.refusal for lead in (into, out) if lead.refusal)
+    refusal = "; ".join(lead.refusal for lead in (into, out) if lead.refusal)
     room = margins(time, angles, rig)
-    return Plan(solution, verdict, room, into.angles, out.angles, flown.node_paths, note)
+    return Plan(solution, verdict, room, into.angles, out.angles, flown.node_paths, refusal)
 
 
 def _polished(problem: Problem, flown: Flown) -> Array:

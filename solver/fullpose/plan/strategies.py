@@ -187,7 +187,7 @@ def free(task: Task, state: State) -> bool:
     return len(state.query.samples) > 1 and not locked(task.problem.rig)
 
 
-def free_and_short(task: Task, state: State) -> bool:
+def free_and_brief(task: Task, state: State) -> bool:
     """Where a wide search does not take too long, too."""
     time = task.problem.time
     return free(task, state) and bool(time[-1] - time[0] <= WIDE_SECONDS)
@@ -223,8 +223,8 @@ ATTEMPTS = (
     Attempt(1, "straight through the singularity", always, along(straight)),
     Attempt(2, "beside the step method", always, beside(lambda fallback: (fallback.exact,))),
     Attempt(2, "beam search", free, along(searching(0))),
-    Attempt(3, "wider beam search", free_and_short, along(searching(1))),
-    Attempt(4, "wider beam search, accelerations dearer", free_and_short, along(searching(2))),
+    Attempt(3, "wider beam search", free_and_brief, along(searching(1))),
+    Attempt(4, "wider beam search, accelerations dearer", free_and_brief, along(searching(2))),
     Attempt(5, "away from the places that failed", always, along(away)),
     Attempt(6, "finer grid and stages", coarse, along(finer)),
     Attempt(6, "farther away", fine, along(away)),

@@ -205,10 +205,10 @@ def _cubic_weights(time: Array, at: Array) -> tuple[Array, Array, Array]:
     value, slope, bend = np.empty_like(t), np.empty_like(t), np.empty_like(t)
     for j in range(STENCIL):
         a, b, c = (t[:, i] for i in range(STENCIL) if i != j)
-        whole = (t[:, j] - a) * (t[:, j] - b) * (t[:, j] - c)
-        value[:, j] = -a * b * c / whole
-        slope[:, j] = (a * b + b * c + c * a) / whole
-        bend[:, j] = -2.0 * (a + b + c) / whole
+        product = (t[:, j] - a) * (t[:, j] - b) * (t[:, j] - c)
+        value[:, j] = -a * b * c / product
+        slope[:, j] = (a * b + b * c + c * a) / product
+        bend[:, j] = -2.0 * (a + b + c) / product
     return value, slope, bend
 
 

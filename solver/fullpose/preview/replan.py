@@ -64,11 +64,11 @@ class Replan:
 
     def run(self) -> Ahead:
         """Find the way."""
-        time, pose, known, over = self.stages()
-        knots, position, rate = smooth_way(time, pose, self.rate[0] if self.past > 0.0 else None)
-        if over == len(time) and self.past > 0.0 and self.options.smoothing:
-            knots, position, rate = smooth_way(knots, self._refined(knots, position, rate[0]), rate[0])
-        lost_at = float(time[over]) if over < len(time) else math.inf
+        time, pose, known, first_violation = self.stages()
+        knots, position, rate = smooth_reference(time, pose, self.rate[0] if self.past > 0.0 else None)
+        if first_violation == len(time) and self.past > 0.0 and self.options.smoothing:
+            knots, position, rate = smooth_reference(knots, self._refined(knots, position, rate[0]), rate[0])
+        lost_at = float(time[first_violation]) if first_violation < len(time) else math.inf
         return Ahead(self.number, knots, position, rate, known, lost_at)
 
     def _refined(self, time: Array, pose: Array, rate: Array) -> Array:
@@ -98,14 +98,14 @@ class Replan:
         )  # fmt: skip
         pose = np.empty((count + 1, 4))
         beam = o.beam if len(self.pose) == 1 else START_BEAM
-        _, over = search(
+        _, first_violation = search(
             self.tight.geometry.horizontal, limit_table(self.tight), costs, Stages(time, attitude, trust),
             Start(self.pose, self.rate, float(self.past)), o.slides, beam, pose,
         )  # fmt: skip
-        return time, pose, known, over
+        return time, pose, known, first_violation
 
 
-def smooth_way(time: Array, pose: Array, rate: Array | None) -> tuple[Array, Array, Array]:
+def smooth_reference(time: Array, pose: Array, rate: Array | None) -> tuple[Array, Array, Array]:
     """(time, pose, rate) twice as dense, with the accelerations that the search reckoned with.
 
     time (k,) [s] evenly spaced, pose (k, 4) [rad]; rate (4,) [rad/s] at the first, None: as over the first stage. A

@@ -45,7 +45,7 @@ START_GRID = 60  # nodes a turn among which a free start is chosen
 
 
 @inner
-def follow(flight: Flight, way_time: Array, way_pose: Array, way_rate: Array, omega: float) -> bool:
+def follow(flight: Flight, reference_time: Array, reference_pose: Array, reference_rate: Array, omega: float) -> bool:
     """increment <- the one that follows the way over the interval ahead; false where it does not reach so far.
 
     Critically damped, bandwidth omega [1/s], by the implicit Euler step, which is stable for any interval. way_time
@@ -53,18 +53,18 @@ def follow(flight: Flight, way_time: Array, way_pose: Array, way_rate: Array, om
     """
     h = flight.ahead
     t = flight.clock + h
-    last = way_time.shape[0] - 1
-    if last < 1 or t > way_time[last] or flight.clock < way_time[0] - 1e-9:
+    last = reference_time.shape[0] - 1
+    if last < 1 or t > reference_time[last] or flight.clock < reference_time[0] - 1e-9:
         return False
-    j = min(int((t - way_time[0]) / (way_time[1] - way_time[0])), last - 1)
-    span = way_time[j + 1] - way_time[j]
-    s = (t - way_time[j]) / span
+    j = min(int((t - reference_time[0]) / (reference_time[1] - reference_time[0])), last - 1)
+    span = reference_time[j + 1] - reference_time[j]
+    s = (t - reference_time[j]) / span
     stiffness = h * omega * omega
     damping = 2.0 * omega
     for i in range(4):
-        rise = way_pose[j + 1, i] - way_pose[j, i]
-        off_chord, v, v_2 = hermite(rise, way_rate[j, i], way_rate[j + 1, i], span, s)
-        p = way_pose[j, i] + s * rise + off_chord
+        rise = reference_pose[j + 1, i] - reference_pose[j, i]
+        off_chord, v, v_2 = hermite(rise, reference_rate[j, i], reference_rate[j + 1, i], span, s)
+        p = reference_pose[j, i] + s * rise + off_chord
         if flight.phase == MOVING:
             rate = flight.rate[i] + h * (v_2 + omega * omega * (p - flight.pose[i]) + damping * v)
             flight.increment[i] = h * rate / (1.0 + h * damping + h * stiffness)
@@ -74,13 +74,13 @@ def follow(flight: Flight, way_time: Array, way_pose: Array, way_rate: Array, om
 
 
 @inner
-def preview_step(flight: Flight, way: tuple[Array, Array, Array, float], C: Array) -> tuple[int, int]:
+def preview_step(flight: Flight, reference: tuple[Array, Array, Array, float], C: Array) -> tuple[int, int]:
     """See `block.propose`: the exact step, but for the null-space increment.
 
     way: times (k,) [s], poses and rates (k, 4) there, bandwidth [1/s]; k = 0: there is none.
     """
     box_ahead(flight)
-    if not follow(flight, way[0], way[1], way[2], way[3]):
+    if not follow(flight, reference[0], reference[1], reference[2], reference[3]):
         null_space_increment(flight)
     goal(flight, C)
     jacobian(flight.axes, flight.pose, flight.J)
@@ -108,7 +108,7 @@ class PreviewStepper(LimitedStepper):
         self._track = Track(2.0 * FIT_WINDOW)
         self._asked = 0
         self.asked_at = -math.inf  # [s] when the last job was asked for
-        self.way = Ahead(0, np.empty(0), np.empty((0, 4)), np.empty((0, 4)), 0, math.inf)
+        self.reference = Ahead(0, np.empty(0), np.empty((0, 4)), np.empty((0, 4)), 0, math.inf)
 
     def begin_at_rest(self, dt: float) -> None:
         """Stand at the start pose at time 0, `dt` [s] after standing there; without it the first rate is free."""
@@ -131,8 +131,8 @@ class PreviewStepper(LimitedStepper):
         """Advance over samples: time (m,) [s], attitude (m, 3, 3)."""
         if self._free and self._flight.phase == FRESH:
             self._choose_start(float(time[0]), attitude[0])
-        way = self.way
-        self._parameters = way.time, way.pose, way.rate, self._options.following
+        reference = self.reference
+        self._parameters = reference.time, reference.pose, reference.rate, self._options.following
         out = super().block(time, attitude)
         for k in range(len(time)):
             self._track.flown(float(time[k]), attitude[k])
@@ -155,11 +155,11 @@ class PreviewStepper(LimitedStepper):
             self._flight.past if moving else 0.0,
         )  # fmt: skip
 
-    def adopt(self, way: Ahead) -> bool:
+    def adopt(self, reference: Ahead) -> bool:
         """Follow a way from now on; false, and nothing changes, where it is older than the one in use or run out."""
-        if way.number <= self.way.number or way.time[-1] <= self._flight.clock:
+        if reference.number <= self.reference.number or reference.time[-1] <= self._flight.clock:
             return False
-        self.way = way
+        self.reference = reference
         return True
 
     def _job(self, clock: float, pose: Array, rate: Array, past: float) -> Replan:
@@ -175,11 +175,11 @@ class PreviewStepper(LimitedStepper):
         if not len(poses) or self._flight.code != EXACT:
             return
         self._track.flown(time, attitude)
-        way = self._job(time, poses, np.zeros_like(poses), 0.0).run()
-        pose, code = start_pose(self._rig, attitude, way.pose[0])
+        reference = self._job(time, poses, np.zeros_like(poses), 0.0).run()
+        pose, code = start_pose(self._rig, attitude, reference.pose[0])
         if code == EXACT:
             self._flight.pose[:] = pose
-            self.way = way
+            self.reference = reference
 
 
 def start_nodes(rig: Rig, table: Array, attitude: Array) -> Array:

@@ -52,7 +52,7 @@ class Kept(NamedTuple):
 
     pose: Array  # (k, width, 4) [rad]
     parent: Counts  # (k, width) the state of the stage before
-    over: NDArray[np.bool_]  # (k, width) whether a limit is exceeded on the way there
+    violated: NDArray[np.bool_]  # (k, width) whether a limit is exceeded on the way there
     rate: Array  # (width, 4) [rad/s]
     cost: Array  # (width,)
 
@@ -64,8 +64,8 @@ class Found(NamedTuple):
     rate: Array  # (space, 4) [rad/s]
     cost: Array  # (space,)
     parent: Counts  # (space,)
-    over: NDArray[np.bool_]  # (space,)
-    place: Counts  # (cells,) where a cell's state is; -1: it has none
+    violated: NDArray[np.bool_]  # (space,)
+    slot: Counts  # (cells,) where a cell's state is; -1: it has none
 
 
 class Scratch(NamedTuple):
@@ -89,9 +89,9 @@ def cell_of(d: Array, along: float) -> int:
     else:
         chart = 2 if s2 >= 0.0 else 3
         angle = d[3]
-    place = math.floor(angle * PLACES / TURN) % PLACES
+    slot = math.floor(angle * PLACES / TURN) % PLACES
     speed = math.floor((along / FASTEST + 1.0) * 0.5 * SPEEDS)
-    return int((chart * PLACES + place) * SPEEDS + min(max(speed, 0), SPEEDS - 1))
+    return int((chart * PLACES + slot) * SPEEDS + min(max(speed, 0), SPEEDS - 1))
 
 
 @inner
@@ -123,24 +123,24 @@ def slide_range(task: Task, stage: Stage, here: Array, rate: Array, room_for: Sc
 
 
 @inner
-def offer(found: Found, count: int, cell: int, x: Array, cost: float, parent: int, over: bool) -> int:
+def offer(found: Found, count: int, cell: int, x: Array, cost: float, parent: int, violated: bool) -> int:
     """Keep the state x, whose rate is in row `count`, if it is the cheapest of its cell; returns the new count."""
-    place = found.place[cell]
+    slot = found.slot[cell]
     following = count
-    if place < 0:
-        place = count
-        found.place[cell] = place
+    if slot < 0:
+        slot = count
+        found.slot[cell] = slot
         following = count + 1
-    elif found.cost[place] <= cost:
+    elif found.cost[slot] <= cost:
         return count
     else:
         for i in range(4):
-            found.rate[place, i] = found.rate[count, i]
+            found.rate[slot, i] = found.rate[count, i]
     for i in range(4):
-        found.pose[place, i] = x[i]
-    found.cost[place] = cost
-    found.parent[place] = parent
-    found.over[place] = over
+        found.pose[slot, i] = x[i]
+    found.cost[slot] = cost
+    found.parent[slot] = parent
+    found.violated[slot] = violated
     return following
 
 
@@ -163,12 +163,12 @@ def expand(task: Task, stage: Stage, kept: Kept, state: int, room_for: Scratch, 
         for i in range(4):
             new_rate[i] = (x[i] - here[i]) / h
             along += new_rate[i] * room_for.null[i]
-        cost, over = step_cost(task, stage, rate, new_rate, x, room_for.box)
-        excess = task.costs.excess
-        total = kept.cost[state] + stage.trust * (h * cost + excess * min(over, 10.0) * h)
-        if over > 0.0:
-            total += stage.trust * excess * h
-        count = offer(found, count, cell_of(x, along), x, total, state, over > 0.0)
+        cost, violation = step_cost(task, stage, rate, new_rate, x, room_for.box)
+        violation_cost = task.costs.violation_cost
+        total = kept.cost[state] + stage.trust * (h * cost + violation_cost * min(violation, 10.0) * h)
+        if violation > 0.0:
+            total += stage.trust * violation_cost * h
+        count = offer(found, count, cell_of(x, along), x, total, state, violation > 0.0)
     return count
 
 
@@ -178,13 +178,13 @@ def keep_cheapest(found: Found, count: int, beam: int, stage: int, kept: Kept) -
     order = np.argsort(found.cost[:count])
     width = min(count, beam)
     for b in range(width):
-        place = order[b]
+        slot = order[b]
         for i in range(4):
-            kept.pose[stage, b, i] = found.pose[place, i]
-            kept.rate[b, i] = found.rate[place, i]
-        kept.cost[b] = found.cost[place]
-        kept.parent[stage, b] = found.parent[place]
-        kept.over[stage, b] = found.over[place]
+            kept.pose[stage, b, i] = found.pose[slot, i]
+            kept.rate[b, i] = found.rate[slot, i]
+        kept.cost[b] = found.cost[slot]
+        kept.parent[stage, b] = found.parent[slot]
+        kept.violated[stage, b] = found.violated[slot]
     return width
 
 
@@ -206,14 +206,14 @@ def room_to_keep(start: Start, stages: int, width: int) -> Kept:
 @inner
 def trace(kept: Kept, state: int, poses: Array) -> int:
     """poses (k, 4) <- the way to a state of the last stage; returns the first stage over a limit, or k."""
-    over = poses.shape[0]
+    first = poses.shape[0]
     for stage in range(poses.shape[0] - 1, -1, -1):
         for i in range(4):
             poses[stage, i] = kept.pose[stage, state, i]
-        if kept.over[stage, state]:
-            over = stage
+        if kept.violated[stage, state]:
+            first = stage
         state = int(kept.parent[stage, state])
-    return int(over)
+    return int(first)
 
 
 @kernel
@@ -247,7 +247,7 @@ def search(
             begin_slides if number == 1 else slides,
         )  # fmt: skip
         tolerances(table, past, stage.ahead, room_for.tolerance)
-        found.place[:] = -1
+        found.slot[:] = -1
         filled = 0
         for b in range(count):
             filled = expand(task, stage, kept, b, room_for, found, filled)

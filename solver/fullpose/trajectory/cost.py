@@ -73,8 +73,8 @@ def path_cost(time: Array, d: Array, cost: Cost, stride: int) -> float:
         total += float(np.sum((np.diff(rate, axis=0) / mid[:, None]) ** 2 * cost.acceleration * mid[:, None]))
     some = d[::stride]
     span = np.gradient(time[::stride]) if len(some) > 1 else np.ones(1)
-    short = np.maximum(0.0, 1.0 - singularity_measures(some) / cost.margin)
-    total += float(np.sum(cost.rise * short**2 * span))
+    deficit = np.maximum(0.0, 1.0 - singularity_measures(some) / cost.margin)
+    total += float(np.sum(cost.rise * deficit**2 * span))
     if cost.homing:
         total += float(np.sum(cost.homing * (some - cost.home) ** 2 * span[:, None]))
     return total
@@ -115,11 +115,11 @@ def cost_bands(at: Iterate, basis: Basis, stride: int, cost: Cost, model: Quadra
                     g[origin + a] += 2.0 * weight * dt * value * row[a]
                     for b in range(a, ROW):
                         H[origin + a, b - a] += 2.0 * weight * dt * row[a] * row[b]
-        short = 1.0 - singularity_measure(d[k]) / cost.margin
-        if short > 0.0:
+        deficit = 1.0 - singularity_measure(d[k]) / cost.margin
+        if deficit > 0.0:
             slope = 2.0 * math.sin(d[k, 1]) * math.cos(d[k, 1]) * n[k, 1]
             slope -= 2.0 * math.cos(d[k, 2]) * math.sin(d[k, 2]) * n[k, 2]
-            down = -2.0 * cost.rise * short / cost.margin
+            down = -2.0 * cost.rise * deficit / cost.margin
             bend = 2.0 * cost.rise / (cost.margin * cost.margin)
             for a in range(values.shape[1]):
                 va = values[k, a] * slope

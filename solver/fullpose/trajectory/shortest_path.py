@@ -76,7 +76,7 @@ class Programme:
         self._copies = Copies(grid.high, grid.wraps, grid.copies, int(np.prod(grid.copies)))
         self.rates = reference_rates(rig)
         self.stretch = 1.0
-        self.excess = 0.0
+        self.violation_cost = 0.0
         self.margin_gain = 1.0
         self.avoid: list[Avoid] = []
         self.motion: tuple[Array, Array] | None = None  # pose and rates (4,) at the first stage: what inertia allows
@@ -96,12 +96,12 @@ class Programme:
             position, nodes.measure, self.rig.home, self.grid.wraps.astype(float), o.home_cost,
             o.singularity_margin * self.margin_gain, o.singularity_cost * self.margin_gain, cost,
         )  # fmt: skip
-        for place in self.avoid:
-            if place.time[0] <= self.time[stage] <= place.time[-1]:
-                gap = position - place.angles[int(np.searchsorted(place.time, self.time[stage]))]
+        for avoided in self.avoid:
+            if avoided.time[0] <= self.time[stage] <= avoided.time[-1]:
+                gap = position - avoided.angles[int(np.searchsorted(avoided.time, self.time[stage]))]
                 gap -= TURN * np.rint(gap / TURN)
-                near = np.maximum(0.0, 1.0 - np.abs(gap).max(axis=1) / place.radius)
-                cost += place.cost * near
+                near = np.maximum(0.0, 1.0 - np.abs(gap).max(axis=1) / avoided.radius)
+                cost += avoided.cost * near
         dt = self.time[min(stage + 1, len(self.time) - 1)] - self.time[max(stage - 1, 0)]
         cost *= 0.5 * dt if len(self.time) > 1 else 1.0
         if self.motion is not None:
@@ -196,7 +196,7 @@ class Programme:
     def _step(self, stage: int, position: Array, costs: Array, back: Counts) -> tuple[Array, Array] | None:
         dt = self.time[stage] - self.time[stage - 1]
         ahead, reach = self.nodes(stage), self._reach(stage)
-        edges = Edges(reach, reach * self.stretch, float(self.excess), self.rig.weight / (self.rates**2 * dt))
+        edges = Edges(reach, reach * self.stretch, float(self.violation_cost), self.rig.weight / (self.rates**2 * dt))
         after = np.empty_like(costs)
         reached = advance(position, costs, ahead, edges, self._copies, after, back)
         return (ahead.position, after) if reached else None
@@ -206,9 +206,11 @@ class Programme:
         nodes = empty_nodes(self.grid.size)
         wide = self._nodes._replace(high=np.full(4, math.inf))
         fill_nodes(self.grid.horizontal, self.attitude[stage], wide, nodes)
-        over = nodes.position - self.grid.high
-        over = np.minimum(over, self.grid.low + TURN - nodes.position)[nodes.alive]  # to the nearer end of the range
-        best = over[np.argmin(over.max(axis=1))]
+        outside = nodes.position - self.grid.high
+        outside = np.minimum(outside, self.grid.low + TURN - nodes.position)[
+            nodes.alive
+        ]  # to the nearer end of the range
+        best = outside[np.argmin(outside.max(axis=1))]
         return int(np.argmax(best)), 0
 
     def _closed_by_inertia(self, stage: int) -> tuple[int, int] | None:
@@ -221,8 +223,8 @@ class Programme:
         if not alive.any():
             return None
         gap, reach = self._inertia(stage, position[alive])
-        over = gap / reach
-        return int(np.argmax(over[np.argmin(over.max(axis=1))])), 2
+        ratio = gap / reach
+        return int(np.argmax(ratio[np.argmin(ratio.max(axis=1))])), 2
 
     def _closed_by(self, stage: int, position: Array, costs: Array) -> tuple[int, int]:
         ahead = self.nodes(stage)

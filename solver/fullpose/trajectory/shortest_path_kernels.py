@@ -24,7 +24,7 @@ class Edges(NamedTuple):
 
     reach: Array  # (4,) [rad] what the rate limits allow
     window: Array  # (4,) [rad] what is taken, `excess` paid for each (overrun as a share of the reach)^2
-    excess: float
+    violation_cost: float
     weight: Array  # (4,) [1/rad^2] of the way squared
 
 
@@ -57,8 +57,8 @@ def edge_cost(
         shift[k] = 0 if copies.wraps[k] else int(turned)
         cost += edges.weight[k] * size * size
         if size > edges.reach[k]:
-            over = size / edges.reach[k] - 1.0
-            cost += edges.excess * over * over
+            violation = size / edges.reach[k] - 1.0
+            cost += edges.violation_cost * violation * violation
     return cost
 
 
@@ -196,8 +196,8 @@ def node_costs(
                 gap -= TURN * np.rint(gap / TURN)
             total += home_cost * gap * gap
         if measure[i] < margin:
-            short = 1.0 - measure[i] / margin
-            total += rise * short * short
+            deficit = 1.0 - measure[i] / margin
+            total += rise * deficit * deficit
         out[i] = total
 
 
@@ -216,19 +216,19 @@ def nearest_crossing(
         for j in range(N):
             if not stage.alive[j]:
                 continue
-            worst = 0.0
+            largest = 0.0
             frame = -1
             for k in range(4):
                 gap = stage.position[j, k] - position0[i, k]
                 if wraps[k]:
                     gap -= TURN * np.rint(gap / TURN)
                 ratio = abs(gap) / reach[k]
-                if ratio > worst:
-                    worst = ratio
+                if ratio > largest:
+                    largest = ratio
                     frame = k
-                if worst >= best:
+                if largest >= best:
                     break
-            if worst < best:
-                best = worst
+            if largest < best:
+                best = largest
                 which = frame
     return which, best

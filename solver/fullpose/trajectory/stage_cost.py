@@ -22,7 +22,7 @@ class Costs(NamedTuple):
     accelerations: float
     singularity: float
     ranges: float
-    excess: float
+    violation_cost: float
     homing: float  # [1/(rad^2 s)]
     at_end: float = 0.0  # [s] of standing at the last stage
     room: float = 0.0
@@ -133,7 +133,7 @@ def step_cost(task: Task, stage: Stage, rate: Array, new_rate: Array, x: Array, 
     costs = task.costs
     h = stage.ahead
     cost = 0.0
-    over = 0.0
+    violation = 0.0
     for i in range(4):
         share = new_rate[i] / table[RATE, i]
         cost += costs.rates * share * share
@@ -143,6 +143,6 @@ def step_cost(task: Task, stage: Stage, rate: Array, new_rate: Array, x: Array, 
         out = max(box.lo[i] - x[i], x[i] - box.hi[i])
         if out > 0.0:
             out /= min(0.5 * table[ACCELERATION, i] * h * h, table[RATE, i] * h, 1.0)
-            over += max(0.0, out - 0.02)
+            violation += max(0.0, out - 0.02)
     cost += pose_cost(task, x)
-    return cost, over
+    return cost, violation

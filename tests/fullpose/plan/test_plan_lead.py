@@ -18,7 +18,7 @@ def test_the_whole_motion_from_rest_to_rest_is_inside_the_limits(seed):
     t, q = random_flight(seed, 3.0, 500.0, 100 * DEG)
     made = plan(t, dcm_from_quaternion(q), RIG)
     assert made.verdict.feasible
-    assert made.lead_note == ""
+    assert made.lead_refusal == ""
     rest = 4
     angles = np.concatenate(
         [
@@ -44,7 +44,7 @@ def test_a_plan_for_a_rig_without_acceleration_limits_can_be_loaded(geometry, se
     rig = Rig("inner only", geometry, (free, free, free, FrameLimits(-60 * DEG, 60 * DEG)))
     t, q = random_flight(seed, 3.0, 250.0, 60 * DEG)
     made = plan(t, dcm_from_quaternion(q), rig)
-    assert made.ready, made.lead_note
+    assert made.ready, made.lead_refusal
     inner = np.concatenate([made.lead_in[:, 3], made.lead_out[:, 3]])
     assert np.abs(inner).max() <= 60 * DEG
     # There is room left for more than a sudden stop.

@@ -51,7 +51,7 @@ def test_a_flight_that_fits_but_cannot_brake_after_its_end_is_slowed_until_it_ca
     rig = Rig("base", Geometry.VERTICAL_4, (base, still, still, still))
     as_it_is = plan(TIME, yaw, rig)
     assert as_it_is.verdict.feasible
-    assert "base frame's position" in as_it_is.lead_note
+    assert "base frame's position" in as_it_is.lead_refusal
     assert not as_it_is.ready
     remedy = slow_down(TIME, yaw, rig)
     assert flies(remedy)

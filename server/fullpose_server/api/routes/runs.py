@@ -12,7 +12,7 @@ from starlette.responses import FileResponse
 from fullpose_server.api.deps import ServicesDep
 from fullpose_server.api.schemas.records import RunOut
 from fullpose_server.runtime.recording.export import write_export
-from fullpose_server.runtime.recording.mcap_reader import is_whole
+from fullpose_server.runtime.recording.mcap_reader import is_complete
 from fullpose_server.runtime.recording.run_index import RunSummary
 
 router = APIRouter(prefix="/runs", tags=["runs"])
@@ -42,7 +42,7 @@ async def export_run(
 ) -> FileResponse:
     """The whole run as a file: every sample of the record; as MCAP always with an index, repaired where need be."""
     record = services.runs.path(run)
-    if kind == "mcap" and await asyncio.to_thread(is_whole, record):
+    if kind == "mcap" and await asyncio.to_thread(is_complete, record):
         return FileResponse(record, media_type=MEDIA_TYPES[kind], filename=record.name)
     folder = services.settings.data_dir / "exports"
     folder.mkdir(exist_ok=True)

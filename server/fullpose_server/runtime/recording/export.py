@@ -15,7 +15,7 @@ from fullpose_server.runtime.contract.telemetry import FIELDS, Samples
 from fullpose_server.runtime.recording import channels
 from fullpose_server.runtime.recording.mcap_reader import (
     RecordError,
-    is_whole,
+    is_complete,
     read_samples,
     recover_messages,
     run_of,
@@ -46,7 +46,7 @@ def write_export(record: Path, target: Path, kind: str) -> None:
     """
     try:
         if kind == "mcap":
-            if is_whole(record):
+            if is_complete(record):
                 shutil.copyfile(record, target)
             else:
                 repair(record, target)

@@ -89,7 +89,7 @@ def run_of(path: Path) -> dict[str, str]:
     raise RecordError(path, "no run in it")
 
 
-def is_whole(path: Path) -> bool:
+def is_complete(path: Path) -> bool:
     """Whether the file was completed (it has its index), and every chunk is as it was written."""
     with path.open("rb") as file:
         try:

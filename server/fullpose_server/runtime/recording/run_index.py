@@ -15,7 +15,7 @@ from fullpose_server.errors import FileError, NotFoundError
 from fullpose_server.runtime.contract.telemetry import Flag, Samples
 from fullpose_server.runtime.recording.mcap_reader import (
     RecordError,
-    is_whole,
+    is_complete,
     read_record,
     run_of,
 )
@@ -89,10 +89,10 @@ class RunFiles:
                 return summary
         except (OSError, ValueError, TypeError):
             pass  # not there yet, or of another version: it is read again
-        whole = is_whole(path)
-        if not whole and _is_fresh(path):
+        complete = is_complete(path)
+        if not complete and _is_fresh(path):
             return _brief(path)
-        made = replace(summarise(path), complete=whole)
+        made = replace(summarise(path), complete=complete)
         if made.bytes == size:
             _keep(made, kept)
         return made

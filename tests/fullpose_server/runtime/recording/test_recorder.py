@@ -12,7 +12,7 @@ from fullpose_server.runtime.contract.messages import Snapshot
 from fullpose_server.runtime.contract.shared_memory import SAMPLES, Shared
 from fullpose_server.runtime.contract.telemetry import SAMPLE
 from fullpose_server.runtime.recording.mcap_reader import (
-    is_whole,
+    is_complete,
     read_events,
     read_record,
     read_samples,
@@ -96,7 +96,7 @@ def test_a_run_that_is_followed_at_once_keeps_its_end(rig: Rig, looks: bool) -> 
     for name, end in ends.items():
         numbers = rig.sequences(name)
         assert numbers == list(range(end - 734 - 999, end + 1)), name
-        assert is_whole(rig.record(name))
+        assert is_complete(rig.record(name))
     assert rig.shared.header["recorder_lost"][0] == 0
 
 
@@ -132,7 +132,7 @@ def test_an_incident_keeps_the_second_before_and_goes_on_until_rest(rig: Rig) ->
     assert 4851 <= numbers[-1] <= rig.head
     assert np.diff(numbers).tolist() == [1] * (len(numbers) - 1)
     assert [event["kind"] for event in read_events(rig.record("x"))] == ["incident", "alarm"]
-    assert is_whole(rig.record("x"))
+    assert is_complete(rig.record("x"))
     run = run_of(rig.record("x"))
     assert (run["incident"], run["rig"], run["who"]) == ("following_error", "rig", "ann")
     before = rig.record("x").stat().st_size
@@ -146,19 +146,19 @@ def test_an_incident_at_rest_goes_on_for_a_second_and_one_that_never_rests_ends(
     rig.incident("x", "estop")
     rig.tick(900)
     rig.look()
-    assert not is_whole(rig.record("x"))
+    assert not is_complete(rig.record("x"))
     rig.tick(200)
     rig.look()
-    assert is_whole(rig.record("x"))
+    assert is_complete(rig.record("x"))
     rig.incident("y", "link_lost")
     begun = rig.head
     for _ in range(3):
         rig.tick(3000, rate_deg_s=float("nan"))
         rig.look()
-    assert not is_whole(rig.record("y"))
+    assert not is_complete(rig.record("y"))
     rig.tick(1100, rate_deg_s=float("nan"))
     rig.look()
-    assert is_whole(rig.record("y"))
+    assert is_complete(rig.record("y"))
     assert rig.sequences("y")[-1] >= begun + 10_000
 
 
@@ -171,7 +171,7 @@ def test_more_faults_belong_to_the_incident_or_run_that_is_recorded(rig: Rig) ->
     second = rig.head
     rig.tick(1200)
     rig.look()
-    assert is_whole(rig.record("x"))
+    assert is_complete(rig.record("x"))
     rows, events = read_record(rig.record("x"))
     assert rows["seq"][-1] >= second + 1000
     assert [event["code"] for event in events if event["kind"] == "alarm"] == ["following_error", "link_lost"]
@@ -196,7 +196,7 @@ def test_a_run_ends_an_incident_and_an_incident_may_follow_a_run_at_once(rig: Ri
     assert rig.sequences("x") == list(range(1001, 2301))
     assert rig.sequences("run") == list(range(1301, 2341))
     assert rig.sequences("y")[0] == 1341
-    assert all(is_whole(rig.record(name)) for name in ("x", "run", "y"))
+    assert all(is_complete(rig.record(name)) for name in ("x", "run", "y"))
 
 
 @pytest.mark.parametrize(
@@ -222,10 +222,10 @@ def test_a_fault_of_a_move_is_kept_though_nothing_flew(tmp_path: Path, kind: str
 
             snapshot = await answered(moved_on, every_s=0.01)
             assert code in [alarm.code for alarm in snapshot.alarms]
-            await soon(lambda: any(is_whole(path) for path in (tmp_path / "runs").glob("*.mcap")))
+            await soon(lambda: any(is_complete(path) for path in (tmp_path / "runs").glob("*.mcap")))
         (record,) = (tmp_path / "runs").iterdir()
         assert "-test-incident-" in record.stem
-        assert is_whole(record)
+        assert is_complete(record)
         run = run_of(record)
         assert (run["incident"], run["rig"], run["who"]) == (code, "test", "operator")
         rows, events = read_record(record)
