@@ -9,6 +9,8 @@ from fastapi import Depends, FastAPI, Request, Response
 from starlette.requests import HTTPConnection
 
 from fullpose_server.api import errors, openapi
+from fullpose_server.api import uploads as uploading
+from fullpose_server.api.body_limit import BodyLimit
 from fullpose_server.api.console import console
 from fullpose_server.api.errors import problem_response
 from fullpose_server.api.origin import OriginGuard
@@ -30,6 +32,7 @@ from fullpose_server.api.routes import (
     stream,
     trajectories,
 )
+from fullpose_server.api.socket_limit import SocketLimit
 from fullpose_server.scene.errors import PayloadMeshError, SceneError
 from fullpose_server.scene.on_demand import ScenesOnDemand
 from fullpose_server.scene.proxy import router as scene_router
@@ -64,6 +67,10 @@ def create_app(settings: Settings) -> FastAPI:
         app.include_router(module.router, prefix=API)
     app.include_router(scene_router, dependencies=[Depends(_scene)])
     app.mount("/", console())
+    uploads = settings.max_upload_bytes + uploading.ENVELOPE
+    larger = {f"{API}/trajectories": uploads, f"{API}/solve": settings.max_json_bytes}
+    app.add_middleware(BodyLimit, settings=settings, larger=larger)
+    app.add_middleware(SocketLimit, settings=settings)
     app.add_middleware(OriginGuard, settings=settings)
 
     def contract() -> dict[str, Any]:

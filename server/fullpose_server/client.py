@@ -94,6 +94,18 @@ class Client:
         wanted = {"trajectory": trajectory, "rig": rig}
         return await self._array("GET", "/plans", params={k: v for k, v in wanted.items() if v is not None})
 
+    async def runs(self, rig: str | None = None) -> list[dict[str, Any]]:
+        """All recorded runs, newest first."""
+        return await self._array("GET", "/runs", params={} if rig is None else {"rig": rig})
+
+    async def delete_run(self, run: str) -> None:
+        """Remove a run that is neither pinned nor being written."""
+        await self._call("DELETE", f"/runs/{quote(run)}")
+
+    async def pin_run(self, run: str, *, pinned: bool = True) -> None:
+        """Keep a run whatever its age, or no longer."""
+        await self._call("PUT" if pinned else "DELETE", f"/runs/{quote(run)}/pin")
+
     async def session(self, rig: str) -> dict[str, Any]:
         """The session as of now."""
         return await self._object("GET", f"/rigs/{quote(rig)}/session")
@@ -172,16 +184,25 @@ class Client:
         return answer
 
     async def _array(self, method: str, path: str, **content: Any) -> list[dict[str, Any]]:
-        answer: list[dict[str, Any]] = await self._call(method, path, **content)
-        return answer
+        """All pages of a list."""
+        response = await self._answer(method, path, **content)
+        rows: list[dict[str, Any]] = response.json()
+        while (following := response.links.get("next")) is not None:
+            response = await self._answer(method, self.url + following["url"])
+            rows += response.json()
+        return rows
 
     async def _call(self, method: str, path: str, **content: Any) -> Any:
+        response = await self._answer(method, path, **content)
+        return response.json() if response.content else None
+
+    async def _answer(self, method: str, path: str, **content: Any) -> httpx.Response:
         try:
             response = await self._http.request(method, path, **content)
         except httpx.HTTPError as error:
             raise ClientError(f"{self.url} does not answer: {str(error) or type(error).__name__}") from error
         if response.is_success:
-            return response.json() if response.content else None
+            return response
         try:
             problem = response.json()
         except ValueError:

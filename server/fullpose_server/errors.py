@@ -54,6 +54,22 @@ class InUseError(ServerError):
         self.by = by
 
 
+class StorageError(ServerError):
+    """The database cannot be written or read as things are."""
+
+
+class StorageFullError(StorageError):
+    """There is no room for it."""
+
+
+class StorageBusyError(StorageError):
+    """Another program holds the database."""
+
+
+class DamagedError(ServerError):
+    """A file of the server's own that is not what it wrote."""
+
+
 class TransitionError(ServerError):
     """A job told to do what its status does not allow."""
 

@@ -16,6 +16,8 @@ def default_data_dir() -> Path:
 
 
 Port = Annotated[int, Field(ge=1, le=65535)]
+Positive = Annotated[int, Field(gt=0)]
+MIB = 1024 * 1024
 
 
 class Settings(BaseSettings):
@@ -29,9 +31,27 @@ class Settings(BaseSettings):
     allow_unauthenticated_network: bool = False  # listen beyond loopback though no users are configured
     allowed_hosts: tuple[str, ...] = ()  # names, beside localhost and addresses, that browsers may reach this server by
     allowed_origins: tuple[str, ...] = ()  # pages of other origins that may use the API
-    max_upload_bytes: int = Field(default=512 * 1024 * 1024, gt=0)
-    max_solve_samples: int = Field(default=1_000_000, gt=0)
-    max_connections: int = Field(default=2000, gt=0)  # served at once; fewer where the system allows fewer files
+    # What one request may cost, and all of them together. Beyond it the answer is 413, 422, 429 or 507, and says so.
+    max_body_bytes: Positive = MIB  # of a request that is neither an upload nor a batch to solve
+    max_upload_bytes: Positive = 512 * MIB
+    max_upload_rows: Positive = 1_000_000  # a quarter of an hour at 1 kHz
+    max_upload_columns: Positive = 256
+    max_upload_memory_bytes: Positive = 320 * MIB  # of the process that reads an upload or solves a batch
+    max_upload_s: float = Field(default=60.0, gt=0.0)  # that it may take for one
+    max_json_bytes: Positive = 16 * MIB  # of a flight or a batch to solve, sent as JSON
+    max_solve_samples: Positive = 100_000
+    max_plan_samples: Positive = 7_200_000  # of a flight at the rig's rate: two hours at 1 kHz
+    max_queued_jobs: Positive = 64  # plans, and as many comparisons
+    max_queued_jobs_per_client: Positive = 16
+    max_page_rows: Positive = 1000  # of a list, in one answer
+    max_message_bytes: Positive = MIB  # of a WebSocket
+    max_websockets: Positive = 600
+    max_connections: Positive = 2000  # served at once; fewer where the system allows fewer files
+    max_idle_s: float = Field(default=30.0, gt=0.0)  # of a client that owes the rest of its request
+    disk_alarm_bytes: int = Field(default=2048 * MIB, ge=0)  # less left: health is degraded
+    disk_reserve_bytes: int = Field(default=256 * MIB, ge=0)  # less left: uploads, plans and exports are refused
+    keep_runs_days: float | None = Field(default=None, gt=0.0)  # older records go; None: they stay. Pinned ones stay
+    keep_runs_bytes: Positive | None = None  # of all records together: beyond it the oldest go
     rig_rate_hz: float = Field(default=1000.0, ge=100.0, le=4000.0)  # as `RigConfig` has it
     live_udp_ports: dict[str, Port] = {}  # rig name to the port where its live source is heard, on loopback
     live_delay_ms: float = Field(

@@ -3,23 +3,29 @@
 import asyncio
 import fcntl
 import os
+import shutil
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fullpose_server.api.deps import Services
-from fullpose_server.errors import ServerError
+from fullpose_server.api.offload.pool import Offload
+from fullpose_server.errors import DamagedError, ServerError
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.rig_file import RigStore
 from fullpose_server.operating import GuardConfig, OperatingConfig, Tolerance
 from fullpose_server.planning.comparisons import Comparisons
 from fullpose_server.planning.plan_queue import PlanQueue
 from fullpose_server.planning.plan_request import PlanRequest
+from fullpose_server.planning.scrub import scrub, scrub_rigs
+from fullpose_server.planning.upkeep import Upkeep
 from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
+from fullpose_server.runtime.recording.retention import Retention, sweep
 from fullpose_server.runtime.recording.run_index import RunFiles
 from fullpose_server.runtime.supervisor.registry import RigHosts
 from fullpose_server.scene.on_demand import ScenesOnDemand
@@ -28,7 +34,9 @@ from fullpose_server.settings import Settings
 from fullpose_server.store.audit import AuditLog
 from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
+from fullpose_server.store.disk import Disk
 from fullpose_server.store.plans import PlanStore
+from fullpose_server.store.quarantine import Quarantine
 from fullpose_server.store.trajectories import TrajectoryStore
 
 
@@ -55,22 +63,38 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
     async with AsyncExitStack() as stack:
         folder = settings.data_dir.resolve()
         stack.callback(os.close, await asyncio.to_thread(_lock, folder))
-        database = await asyncio.to_thread(Database, folder / "fullpose.db")
+        quarantine = Quarantine(folder / "quarantine")
+        database = await asyncio.to_thread(_opened, folder / "fullpose.db", quarantine)
         stack.callback(database.close)
-        served = _build(settings, folder, database, scenes)
+        served = await asyncio.to_thread(_build, settings, folder, database, scenes, quarantine)
         services = served.services
         stack.push_async_callback(asyncio.to_thread, services.trail.close)
         stack.callback(scenes.close)
+        services.offload.start()
+        stack.push_async_callback(services.offload.close)
         await services.queue.start()
         stack.push_async_callback(services.queue.close)
         services.comparisons.start()
         stack.push_async_callback(services.comparisons.close)
         stack.push_async_callback(services.hosts.close, stop_rigs=settings.stop_rigs_on_exit)
         await services.hosts.adopt()
+        stack.push_async_callback(services.upkeep.close)
+        services.upkeep.start()
         yield served
 
 
-def _build(settings: Settings, folder: Path, database: Database, scenes: SceneServer) -> Served:
+def _opened(path: Path, quarantine: Quarantine) -> Database:
+    """The database; one that is damaged is moved aside, and a new one made in its place: a rig must be operable."""
+    try:
+        return Database(path)
+    except DamagedError as error:
+        files = [path, *(path.with_name(f"{path.name}{end}") for end in ("-wal", "-shm"))]
+        quarantine.take("database", path.stem, files, f"{error}; to restore: stop, put a backup in the place of {path}")
+        return Database(path)
+
+
+def _build(settings: Settings, folder: Path, database: Database, scenes: SceneServer, quarantine: Quarantine) -> Served:
+    scrub_rigs(folder / "rigs", quarantine)
     rigs = RigStore(folder / "rigs", _operating(settings))
     trajectories = TrajectoryStore(database, folder / "trajectories")
     plans = PlanStore(database, folder / "plans")
@@ -85,6 +109,8 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         return None if rows is None else rows[0]
 
     audit = AuditLog(database)
+    runs, comparisons = RunFiles(run_folder), Comparisons(folder / "comparisons", quarantine)
+    retention = Retention(settings.keep_runs_days, settings.keep_runs_bytes)
     on_demand = ScenesOnDemand(scenes, rigs, latest)
     services = Services(
         settings=settings,
@@ -93,14 +119,29 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         trajectories=trajectories,
         plans=plans,
         queue=PlanQueue(plans, _PlanRequests(rigs, trajectories, plans).request),
-        comparisons=Comparisons(folder / "comparisons"),
+        comparisons=comparisons,
         audit=audit,
         trail=AuditTrail(audit),
         hosts=hosts,
-        runs=RunFiles(run_folder),
+        runs=runs,
         scenes=on_demand,
+        offload=Offload(settings),
+        disk=Disk(folder, settings.disk_alarm_bytes, settings.disk_reserve_bytes),
+        quarantine=quarantine,
+        upkeep=Upkeep(
+            partial(scrub, plans, trajectories, comparisons, runs, quarantine),
+            partial(sweep, runs, retention) if retention.on else None,
+        ),
+        uploads=_emptied(folder / "uploads"),
     )
     return Served(services, on_demand)
+
+
+def _emptied(folder: Path) -> Path:
+    """A folder for what is being received, without what an earlier server was receiving when it ended."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 def _operating(settings: Settings) -> OperatingConfig:

@@ -6,12 +6,12 @@ from numpy.typing import NDArray
 from fullpose._typing import Array
 from fullpose.attitude import dcm_from_euler, dcm_from_quaternion
 from fullpose.bounds import limited_name
-from fullpose_server.api.problems import ApiError
+from fullpose.errors import InputError
 from fullpose_server.api.schemas.solve import Attitudes, Limited
 
 
 def attitudes(message: Attitudes) -> tuple[Array, Array]:
-    """time (n,) [s] and C (n, 3, 3). Raises `ApiError` 422 for a quaternion that is none."""
+    """time (n,) [s] and C (n, 3, 3). Raises `InputError` for a quaternion that is none."""
     time = np.array(message.time_s)
     if message.q is None:
         yaw, pitch, roll = np.deg2rad(np.array(message.euler_deg)).T
@@ -21,7 +21,7 @@ def attitudes(message: Attitudes) -> tuple[Array, Array]:
     bad = np.flatnonzero(~((norm > 0.5) & (norm < 2.0)))
     if bad.size:
         row = int(bad[0])
-        raise ApiError(422, "solver-input", f"q[{row}] = {q[row].tolist()}: expected a unit quaternion")
+        raise InputError("q", row, q[row].tolist(), "a unit quaternion")
     return time, dcm_from_quaternion(q / norm[:, None])
 
 

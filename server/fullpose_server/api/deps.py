@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Annotated, Any, Protocol
 
 from fastapi import Depends, Header
@@ -10,19 +11,23 @@ from numpy.typing import ArrayLike
 from starlette.requests import HTTPConnection
 
 from fullpose_server.api.front import FrontStatus
+from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.stopping import is_name, who_stops
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.formats.rig_file import RigStore
 from fullpose_server.planning.comparisons import Comparisons
 from fullpose_server.planning.plan_queue import PlanQueue
+from fullpose_server.planning.upkeep import Upkeep
 from fullpose_server.runtime.recording.run_index import RunFiles
 from fullpose_server.runtime.supervisor.registry import RigHosts
 from fullpose_server.settings import Settings
 from fullpose_server.store.audit import AuditLog
 from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
+from fullpose_server.store.disk import Disk
 from fullpose_server.store.plans import PlanStore
+from fullpose_server.store.quarantine import Quarantine
 from fullpose_server.store.trajectories import TrajectoryStore
 
 
@@ -55,6 +60,11 @@ class Services:
     hosts: RigHosts
     runs: RunFiles
     scenes: Scenes
+    offload: Offload
+    disk: Disk
+    quarantine: Quarantine
+    upkeep: Upkeep
+    uploads: Path  # where what is being received goes
     front: FrontStatus = field(default_factory=FrontStatus)
     frames: dict[str, FrameSource] = field(default_factory=dict)
     live_sources: set[str] = field(default_factory=set)  # rigs that have one connected

@@ -1,25 +1,46 @@
 """Every error as application/problem+json (RFC 9457), with a stable code in its type."""
 
+import errno
 import logging
+from collections.abc import Mapping
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import ValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
+from starlette.routing import Match, Mount
 
-from fullpose.errors import InputError, MethodError
+from fullpose.errors import SolverError
 from fullpose_server.api.problems import MEDIA_TYPE, ApiError, validation_problem
 from fullpose_server.api.schemas.base import FieldProblem, Problem
-from fullpose_server.errors import FileError, NotFoundError
+from fullpose_server.errors import (
+    DamagedError,
+    FileError,
+    NotFoundError,
+    ServerError,
+    StorageError,
+    StorageFullError,
+)
+from fullpose_server.formats.importers.columns import TooLargeError
 
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
+RETRY_S = 5  # what a client is told to wait where the server has too much to do, or no room
 log = logging.getLogger(__name__)
+
+
+class BodyError(HTTPException):
+    """An `ApiError` while a body is received, where FastAPI takes others for a body that it cannot parse."""
+
+    def __init__(self, error: ApiError) -> None:
+        super().__init__(error.problem.status, error.problem.detail)
+        self.problem = error.problem
 
 
 def problem_of(error: Exception) -> Problem:
     """The document of an error; errors nobody planned for become 500 and are logged, without their text."""
     match error:
-        case ApiError():
+        case ApiError() | BodyError():
             return error.problem
         case HTTPException():
             return ApiError(error.status_code, "http", str(error.detail)).problem
@@ -28,30 +49,62 @@ def problem_of(error: Exception) -> Problem:
         case NotFoundError():
             return ApiError(404, "not-found", str(error)).problem
         case FileError():
-            return ApiError(422, "file", str(error), errors=[_file_problem(error)]).problem
-        case InputError() | MethodError():
+            status, code = (413, "too-large") if isinstance(error, TooLargeError) else (422, "file")
+            return ApiError(status, code, str(error), errors=[_file_problem(error)]).problem
+        case StorageFullError():
+            return ApiError(507, "disk-full", str(error)).problem
+        case StorageError():
+            return ApiError(503, "database", str(error)).problem
+        case DamagedError():
+            return ApiError(409, "damaged", str(error)).problem
+        case SolverError():
             return ApiError(422, "solver-input", str(error)).problem
+        case OSError(errno=errno.ENOSPC | errno.EDQUOT):
+            return ApiError(507, "disk-full", f"the disk is full: {error.strerror}").problem
         case _:
             log.error("unexpected error", exc_info=error)
             return ApiError(500, "internal", "an error of the server; its log tells more").problem
 
 
-def problem_response(problem: Problem, request: Request | None = None) -> Response:
+def problem_response(
+    problem: Problem, request: Request | None = None, headers: Mapping[str, str] | None = None
+) -> Response:
     """The HTTP answer of a problem."""
     if request is not None:
         problem = problem.model_copy(update={"instance": request.url.path})
-    return Response(problem.model_dump_json(exclude_none=True), problem.status, media_type=MEDIA_TYPE)
+    told = {"Retry-After": str(RETRY_S)} if problem.status in (429, 503, 507) else {}
+    return Response(
+        problem.model_dump_json(exclude_none=True), problem.status, {**told, **(headers or {})}, media_type=MEDIA_TYPE
+    )
 
 
 def install(app: FastAPI) -> None:
     """Answer every error of the app with a problem document."""
 
     async def answer(request: Request, error: Exception) -> Response:
+        if isinstance(error, HTTPException) and error.status_code in (404, 405):  # nobody's own: the router's
+            methods = _methods(app, request)
+            if methods:
+                listed = ", ".join(methods)
+                refusal = ApiError(405, "method", f"{request.method} {request.url.path}: expected {listed}")
+                return problem_response(refusal.problem, request, {"Allow": listed})
         return problem_response(problem_of(error), request)
 
-    for kind in (ApiError, HTTPException, RequestValidationError, FileError, NotFoundError, InputError, MethodError):
+    for kind in (ApiError, HTTPException, RequestValidationError, ServerError, SolverError, OSError):
         app.add_exception_handler(kind, answer)
     app.add_exception_handler(Exception, answer)
+
+
+def _methods(app: FastAPI, request: Request) -> list[str]:
+    """What the path would take, were it not for this method. The console, which takes every path, is left out."""
+    asked = {"type": "http", "path": request.scope["path"], "root_path": "", "headers": [], "path_params": {}}
+    routes = [route for route in app.router.routes if not isinstance(route, Mount)]
+    found = [m for m in METHODS if any(r.matches({**asked, "method": m})[0] is Match.FULL for r in routes)]
+    if request.method in found:
+        return []
+    if not found and request.method not in ("GET", "HEAD") and not request.url.path.startswith("/api/"):
+        return ["GET", "HEAD"]  # a page of the console
+    return found
 
 
 def _file_problem(error: FileError) -> FieldProblem:

@@ -32,6 +32,9 @@ class _Rooms(Collector):
         busy = GaugeMetricFamily("fullpose_planner_busy", "Whether a plan is being made")
         busy.add_metric([], float(services.queue.status == "busy"))
         yield busy
+        free = GaugeMetricFamily("fullpose_disk_free_bytes", "Free on the data folder's disk")
+        free.add_metric([], float(services.disk.free_bytes()))
+        yield free
         yield from _rigs(services.hosts.all())
 
 

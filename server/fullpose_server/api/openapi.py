@@ -1,6 +1,6 @@
 """The contract: FastAPI's own, with problem documents for every error and the WebSocket messages beside the rest."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Any, get_args
 
@@ -41,6 +41,17 @@ SPOKEN = {
     "stop_channel": "Stop",
 }
 MESSAGES = (*chain.from_iterable(SENT.values()), TrajectoryIn, SolveIn)
+REFUSALS = {
+    "400": "The body is not what its type says",
+    "403": "A foreign page, or a foreign name of this server",
+    "404": "No such thing",
+    "408": "The rest of the request did not come",
+    "413": "Larger than a bound of this server",
+    "422": "Validation Error",
+    "503": "The database or a process that it takes does not answer",
+    "507": "No room on the disk",
+}
+BUSY: dict[int | str, dict[str, Any]] = {429: {"description": "Too many at once: try again later"}}
 ANSWERS = (Problem, *chain.from_iterable(ANSWERED.values()))
 
 
@@ -65,13 +76,26 @@ def contract(app: FastAPI, routes: Iterable[BaseRoute], prefix: str) -> dict[str
         schemas[union] = _union(models)
     schemas.pop("HTTPValidationError", None)
     schemas.pop("ValidationError", None)
-    for path in document["paths"].values():
-        for operation in path.values():
+    for path, operations in document["paths"].items():
+        for method, operation in operations.items():
+            for status in _statuses(path, method, operation):
+                operation["responses"].setdefault(status, {"description": REFUSALS[status]})
             _problems(operation["responses"])
     document["components"]["schemas"] = dict(sorted(schemas.items()))
     document["x-websockets"] = _sockets(routes, prefix)
     document["x-telemetry-flags"] = {flag.name.lower(): flag.value for flag in Flag if flag.name}
     return document
+
+
+def _statuses(path: str, method: str, operation: Mapping[str, Any]) -> Iterator[str]:
+    """The refusals that an operation shares with all of its kind; those of its own are at its route."""
+    yield from ("403", "503")
+    if "{" in path:
+        yield "404"
+    if "requestBody" in operation:  # which may name a thing that is not there
+        yield from ("400", "404", "408", "413", "422")
+    if method != "get":
+        yield "507"
 
 
 def _union(models: Sequence[type[Wire]]) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """The API's own errors and their problem documents (RFC 9457); light: the stop gate has them too."""
 
+import reprlib
 from collections.abc import Sequence
 from http import HTTPStatus
 from typing import Any
@@ -7,6 +8,9 @@ from typing import Any
 from fullpose_server.api.schemas.base import FieldProblem, Problem
 
 MEDIA_TYPE = "application/problem+json"
+LONGEST = 2000  # characters of a detail
+_ABRIDGING = reprlib.Repr()  # never the whole of a large value
+_ABRIDGING.maxstring = _ABRIDGING.maxother = _ABRIDGING.maxlong = 120
 
 
 class ApiError(Exception):
@@ -28,7 +32,7 @@ class ApiError(Exception):
             type=f"urn:fullpose:problem:{code}",
             title=HTTPStatus(status).phrase,
             status=status,
-            detail=detail,
+            detail=plain(detail, LONGEST),
             errors=list(errors),
             state=state,
             command=command,
@@ -45,8 +49,8 @@ def validation_problem(errors: Sequence[Any]) -> Problem:
     """422 from pydantic's list of errors."""
     fields = [
         FieldProblem(
-            where=".".join(str(part) for part in item["loc"]),
-            message=item["msg"],
+            where=plain(".".join(str(part) for part in item["loc"]), 200),
+            message=plain(item["msg"], 400),
             value=None if item["type"] == "missing" else _abridged(item.get("input")),
         )
         for item in errors[:20]
@@ -56,6 +60,14 @@ def validation_problem(errors: Sequence[Any]) -> Problem:
     return ApiError(422, "validation", detail, errors=fields).problem
 
 
+def plain(text: str, longest: int) -> str:
+    """Text that an answer may carry whatever a client has sent: not longer, and without halves of characters."""
+    text = text if len(text) <= longest else text[: longest - 3] + "..."
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
 def _abridged(value: object) -> str | None:
-    text = repr(value)
-    return text if len(text) <= 120 else text[:117] + "..."
+    try:
+        return plain(_ABRIDGING.repr(value), 120)
+    except (RecursionError, ValueError):  # too deep, or a number of too many digits
+        return None

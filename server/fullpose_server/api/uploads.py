@@ -6,16 +6,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from python_multipart.exceptions import MultipartParseError
+from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.requests import ClientDisconnect, Request
 
+from fullpose_server.api.body_limit import too_large
 from fullpose_server.api.problems import ApiError
 
 if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks
 
 FIELD_LIMIT = 4096  # bytes of a form field that is not the file
+FIELDS = ("name", "convention")  # that a form may have beside its file
+LONGEST_NAME = 200  # characters of a file's name
 ENVELOPE = 65536  # what a form may have around its file
 
 
@@ -29,27 +32,23 @@ class Upload:
     fields: dict[str, str] = field(default_factory=dict)
 
 
-async def receive(request: Request, target: Path, limit: int) -> Upload:
+async def receive_form(request: Request, target: Path, limit: int) -> Upload:
     """Read the form of `request`; the part named `file` goes to `target`.
 
-    Raises `ApiError`: 413 past `limit`, before reading where Content-Length tells; 400 for a broken form; 422 where it
-    has no file.
+    Raises `ApiError`: 413 past `limit`; 400 for a broken form; 422 where it has no file, or a field that is none.
     """
     _, options = parse_options_header(request.headers.get("content-type", ""))
     boundary = options.get(b"boundary")
     if not boundary:
         raise ApiError(400, "malformed-form", "multipart/form-data without a boundary")
-    length = request.headers.get("content-length", "")
-    if length.isdigit() and int(length) > limit + ENVELOPE:
-        raise too_large(limit)
     with target.open("wb") as stream:
         form = _Form(stream, limit)
-        parser = MultipartParser(boundary, form.callbacks())
         try:
+            parser = MultipartParser(boundary, form.callbacks())
             async for chunk in _chunks(request):
                 parser.write(chunk)  # one chunk is at most 64 kB: the disk's cache takes it without delay
             parser.finalize()
-        except MultipartParseError as error:
+        except FormParserError as error:
             raise ApiError(400, "malformed-form", f"broken multipart/form-data: {error}") from None
     if not form.found:
         raise ApiError(422, "validation", "file: the form has no part named file with a file in it")
@@ -57,9 +56,21 @@ async def receive(request: Request, target: Path, limit: int) -> Upload:
     return form.upload
 
 
-def too_large(limit: int) -> ApiError:
-    """413, with the limit in words."""
-    return ApiError(413, "too-large", f"the upload is larger than this server takes, {limit / 1e6:.0f} MB")
+async def receive_body(request: Request, target: Path, limit: int) -> Upload:
+    """Read the whole body of `request` to `target`. Raises `ApiError` 413 past `limit`, at once if announced."""
+    announced = request.headers.get("content-length", "")
+    if announced.isdecimal() and (len(announced) > 18 or int(announced) > limit):
+        raise too_large(limit)
+    upload, digest = Upload(), hashlib.sha256()
+    with target.open("wb") as stream:
+        async for chunk in _chunks(request):
+            upload.size += len(chunk)
+            if upload.size > limit:
+                raise too_large(limit)
+            digest.update(chunk)
+            stream.write(chunk)
+    upload.sha256 = digest.hexdigest()
+    return upload
 
 
 async def _chunks(request: Request) -> AsyncIterator[bytes]:
@@ -114,7 +125,12 @@ class _Form:
             if self.found:
                 raise ApiError(422, "validation", "file: one file an upload")
             self.found = True
-            self.upload.filename = Path((filename or b"").decode("utf-8", "replace")).name
+            self.upload.filename = Path((filename or b"").decode("utf-8", "replace")).name[-LONGEST_NAME:]
+        elif self._name not in FIELDS:
+            known = ", ".join(("file", *FIELDS))
+            raise ApiError(422, "validation", f"{self._name[:80]!r}: no field of this form; expected {known}")
+        elif self._name in self.upload.fields:
+            raise ApiError(422, "validation", f"{self._name}: given twice")
 
     def _part_data(self, data: bytes, start: int, end: int) -> None:
         piece = data[start:end]

@@ -66,7 +66,7 @@ def _prewarm() -> None:
 async def _run(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
     gate = GateProcess.spawn(listener)  # it loads while the server does
     app = create_app(settings)
-    config = served_by(app, timeout_graceful_shutdown=3)
+    config = served_by(app, timeout_graceful_shutdown=3, ws_max_size=settings.max_message_bytes)
     keeper: Keeper | None = None
     try:
         async with app.router.lifespan_context(app):

@@ -11,6 +11,7 @@ import numpy as np
 
 from fullpose.solution import Solution
 from fullpose_server.errors import FileError
+from fullpose_server.formats import durable
 
 COLUMNS = ("time_s", "base_deg", "outer_deg", "middle_deg", "inner_deg", "error_deg", "limited")
 _ROW = "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d\n"
@@ -32,7 +33,7 @@ def replacing(path: Path) -> Iterator[Path]:
         mask = os.umask(0)
         os.umask(mask)
         draft.chmod(0o666 & ~mask)  # mkstemp's files are private; this one is like any other
-        draft.replace(target)
+        durable.rename(draft, target)
     except BaseException:
         draft.unlink(missing_ok=True)
         raise

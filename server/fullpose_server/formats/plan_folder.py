@@ -8,17 +8,20 @@ A folder holds `plan.json` and three arrays at the rig's uniform rate, lead-in a
 import hashlib
 import json
 import math
-import os
 import shutil
 import tempfile
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 
 from fullpose._typing import Array
 from fullpose.rig import FRAMES, Rig
+from fullpose_server.errors import DamagedError
+from fullpose_server.formats import durable
+from fullpose_server.formats.mapped import map_doubles
 
 _ARRAYS = ("angles", "target", "error")
 
@@ -158,13 +161,10 @@ def write_plan(folder: Path, plan: PlanFolder) -> None:
         for name in _ARRAYS:
             np.save(draft / f"{name}.npy", getattr(plan, name), allow_pickle=False)
         (draft / "plan.json").write_text(json.dumps(asdict(plan.info), indent=2), "utf-8")
-        for name in (*(f"{a}.npy" for a in _ARRAYS), "plan.json"):
-            with (draft / name).open("rb") as file:
-                os.fsync(file.fileno())
         draft.chmod(0o755)
         if folder.exists():
             shutil.rmtree(folder)
-        draft.rename(folder)
+        durable.rename(draft, folder)
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
@@ -180,12 +180,9 @@ def read_plan(folder: Path, *, verify: bool = True) -> PlanFolder:
     for name, shape in (("angles", (info.samples, 4)), ("target", (info.samples, 4)), ("error", (info.samples,))):
         path = folder / f"{name}.npy"
         try:
-            array = np.load(path, mmap_mode="r", allow_pickle=False)
-        except (OSError, ValueError) as cause:
-            raise PlanFolderError(path, f"not a readable array ({cause})") from cause
-        if array.shape != shape or array.dtype != np.dtype("<f8"):
-            raise PlanFolderError(path, f"{array.dtype} {array.shape}: expected float64 {shape}")
-        arrays[name] = array
+            arrays[name] = map_doubles(path, shape)
+        except DamagedError as error:
+            raise PlanFolderError(path, str(error).removeprefix(f"{path}: ")) from error
     plan = PlanFolder(info, **arrays)
     if verify and plan_hash(plan.angles, plan.target, plan.error) != info.plan_hash:
         raise PlanFolderError(folder, "the arrays are not those that plan.json's hash was taken of")
@@ -195,9 +192,11 @@ def read_plan(folder: Path, *, verify: bool = True) -> PlanFolder:
 def _read_info(folder: Path) -> PlanInfo:
     path = folder / "plan.json"
     try:
-        raw = json.loads(path.read_text("utf-8"))
-        known = {field.name for field in fields(PlanInfo)}
-        # Keys may be added by whoever stores plans; those that the rig needs must be there.
-        return PlanInfo(**{key: value for key, value in raw.items() if key in known})
-    except (OSError, ValueError, TypeError, AttributeError) as cause:
+        # Keys may be added by whoever stores plans; those that the rig needs must be there, and be what they are.
+        info = msgspec.json.decode(path.read_bytes(), type=PlanInfo)
+    except (OSError, ValueError, msgspec.MsgspecError) as cause:
         raise PlanFolderError(path, f"not a plan ({cause})") from cause
+    leads = (info.lead_in_samples, info.lead_out_samples)
+    if min(leads) < 0 or sum(leads) + 2 > info.samples or not 0.0 < info.rate_hz < math.inf:
+        raise PlanFolderError(path, f"{info.samples} samples, leads of {leads}, {info.rate_hz} Hz: expected a flight")
+    return info

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -115,24 +115,30 @@ def from_columns(
 
     first_bad = [(int(np.argmin(ok)), name) for name in names if not (ok := np.isfinite(columns[name])).all()]
     if first_bad:
-        row, name = min(first_bad)
-        raise fail(row, name, "a finite number", columns[name][row])
+        row, column = min(first_bad)
+        raise fail(row, column, "a finite number", columns[column][row])
     if found := bad_time(time):
         row, expected = found
         raise fail(row, "time_s", expected, time[row])
     step = np.diff(time)
 
     warnings: list[Caution] = []
-    if names[1:] == QUATERNION:
-        q, off = _unit(np.stack([columns[name] for name in QUATERNION], axis=-1), fail)
-        if off > 1e-3:
-            warnings.append(Caution("norm", f"quaternions are up to {off:.2g} off unit length; they were normalised"))
-        q = quaternion_from_ned(q) if convention is Convention.NED else q
-    else:
-        first, second, third = (columns[name] for name in convention.euler)
-        warnings += _unit_warnings(first, second, third)
-        angles = np.deg2rad(first), np.deg2rad(second), np.deg2rad(third)
-        q = quaternion_from_euler(*(euler_from_ned(*angles) if convention is Convention.NED else angles))
+    q, off = np.empty((time.size, 4)), 0.0
+    for begin in range(0, time.size, _BLOCK):  # what is between columns and attitudes is several times as large
+        part = slice(begin, begin + _BLOCK)
+        if names[1:] == QUATERNION:
+            given = np.stack([columns[name][part] for name in QUATERNION], axis=-1)
+            ours, largest = _unit(given, partial(_later, fail, begin))
+            q[part], off = quaternion_from_ned(ours) if convention is Convention.NED else ours, max(off, largest)
+        else:
+            first, second, third = (np.deg2rad(columns[name][part]) for name in convention.euler)
+            if convention is Convention.NED:
+                first, second, third = euler_from_ned(first, second, third)
+            q[part] = quaternion_from_euler(first, second, third)
+    if off > 1e-3:
+        warnings.append(Caution("norm", f"quaternions are up to {off:.2g} off unit length; they were normalised"))
+    if names[1:] != QUATERNION:
+        warnings += _unit_warnings(*(columns[name] for name in convention.euler))
     if step.size and float(np.median(step)) >= 1.0:
         text = f"the median step is {float(np.median(step)):.6g} s: is time_s in seconds?"
         warnings.append(Caution("time-unit", text))
@@ -149,13 +155,22 @@ def euler_deg(q: Array) -> Array:
 
 
 def continuous(q: Array) -> Array:
-    """The same attitudes with each quaternion's sign that of its predecessor's hemisphere. (n, 4)"""
-    flips = np.sum(q[1:] * q[:-1], axis=-1) < 0.0
-    sign = np.where(np.concatenate([[False], np.cumsum(flips) % 2 == 1]), -1.0, 1.0)
-    return np.asarray(q * sign[:, None])
+    """The same attitudes with each quaternion's sign that of its predecessor's hemisphere, in place. (n, 4)"""
+    flips = np.einsum("ij,ij->i", q[1:], q[:-1]) < 0.0
+    odd = np.concatenate([[False], np.logical_xor.accumulate(flips)])
+    q[odd] *= -1.0
+    return q
 
 
-def _unit(q: Array, fail: Callable[[int, str, str, float], FileError]) -> tuple[Array, float]:
+_Fail = Callable[[int, str, str, float], FileError]
+
+
+def _later(fail: _Fail, begin: int, row: int, column: str, expected: str, value: float) -> FileError:
+    """`fail` for a row of a block that begins at `begin`."""
+    return fail(begin + row, column, expected, value)
+
+
+def _unit(q: Array, fail: _Fail) -> tuple[Array, float]:
     norm = np.linalg.norm(q, axis=-1)
     bad = ~((norm > 0.5) & (norm < 2.0))
     if bad.any():

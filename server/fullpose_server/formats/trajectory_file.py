@@ -4,16 +4,20 @@ import io
 from pathlib import Path
 
 from fullpose_server.errors import FileError
+from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds
 from fullpose_server.formats.importers.csv import read_csv
 from fullpose_server.formats.trajectory import Convention, Trajectory
 
 PARQUET_MAGIC = b"PAR1"
 
 
-def read_trajectory(path: Path, convention: Convention, name: str | None = None) -> Trajectory:
+def read_trajectory(
+    path: Path, convention: Convention, name: str | None = None, bounds: Bounds = UNBOUNDED
+) -> Trajectory:
     """The flight in a CSV or Parquet file, told apart by content; `name` replaces the path in messages.
 
-    Raises `FileError` for everything a person can put right, `OSError` where the file cannot be read at all.
+    Raises `TooLargeError` beyond the bounds, `FileError` for everything else a person can put right, `OSError` where
+    the file cannot be read at all.
     """
     file = str(path) if name is None else name
     with path.open("rb") as stream:
@@ -23,10 +27,10 @@ def read_trajectory(path: Path, convention: Convention, name: str | None = None)
     if head.startswith(PARQUET_MAGIC):
         from fullpose_server.formats.importers.parquet import read_parquet  # 80 ms that CSV need not pay
 
-        return read_parquet(path, convention, file)
+        return read_parquet(path, convention, file, bounds)
     if b"\0" in head or not _is_text(head):
         raise FileError(file, "CSV text or Parquet, this is another binary file")
-    return read_csv(path, convention, file)
+    return read_csv(path, convention, file, bounds)
 
 
 def source_format(path: Path) -> str:

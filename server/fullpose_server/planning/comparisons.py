@@ -14,12 +14,15 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-from fullpose_server.errors import NotFoundError, TransitionError
+from fullpose.errors import SolverError
+from fullpose_server.errors import DamagedError, NotFoundError, TransitionError
 from fullpose_server.formats.output_file import write_text
 from fullpose_server.planning.compare_request import ERROR, REPORT, REQUEST, CompareRequest, read_request
 from fullpose_server.planning.job import Kind, Outcome, Progress
-from fullpose_server.planning.runner import Runner, RunnerStatus
+from fullpose_server.planning.runner import Pending, Runner, RunnerStatus
 from fullpose_server.store.jobs import JobStatus
+from fullpose_server.store.keyset import Key
+from fullpose_server.store.quarantine import Quarantine
 
 _ID = re.compile(r"[0-9a-f]{16}")
 
@@ -67,10 +70,18 @@ class Comparison:
 class Comparisons:
     """The comparisons. Use it from one event loop; `close` ends what runs."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, quarantine: Quarantine) -> None:
         self._root = root
         root.mkdir(parents=True, exist_ok=True)
-        self._jobs = {job.id: job for path in sorted(root.iterdir()) if (job := _found(path)) is not None}
+        self._jobs: dict[str, Comparison] = {}
+        for path in sorted(root.iterdir()):
+            try:
+                job = _found(path)
+            except (ValueError, KeyError, TypeError, AttributeError, OSError, SolverError) as error:
+                quarantine.take("comparison", path.name, [path], f"{type(error).__name__}: {error}")
+                continue
+            if job is not None:
+                self._jobs[job.id] = job
         self._runner = Runner("comparisons", prewarm=False)
 
     @property
@@ -82,12 +93,17 @@ class Comparisons:
         """Begin to take comparisons."""
         self._runner.start()
 
-    async def submit(self, request: CompareRequest) -> Comparison:
-        """A new comparison, queued."""
+    @property
+    def pending(self) -> Pending:
+        """What waits or is in work."""
+        return self._runner.pending
+
+    async def submit(self, request: CompareRequest, owner: str = "") -> Comparison:
+        """A new comparison, queued; `owner` is who asked for it."""
         job = Comparison(self._root / uuid4().hex[:16], request, JobStatus.QUEUED)
         await asyncio.to_thread(_write_request, job)
         self._jobs[job.id] = job
-        self._runner.submit(job)
+        self._runner.submit(job, owner)
         return job
 
     def get(self, comparison: str) -> Comparison:
@@ -96,9 +112,10 @@ class Comparisons:
             raise NotFoundError("comparison", comparison)
         return self._jobs[comparison]
 
-    def all(self) -> Sequence[Comparison]:
-        """Newest first."""
-        return sorted(self._jobs.values(), key=lambda job: -job.request.created)
+    def all(self, before: Key | None = None, limit: int | None = None) -> Sequence[Comparison]:
+        """Newest first, those after the one at `before`, at most `limit`."""
+        found = sorted(self._jobs.values(), key=_key, reverse=True)
+        return [job for job in found if before is None or _key(job) < before][:limit]
 
     def progress(self, comparison: str) -> Progress | None:
         """Of one that is being made."""
@@ -109,22 +126,35 @@ class Comparisons:
         job = self.get(comparison)
         if job.status is not JobStatus.DONE:
             return None
-        report: dict[str, Any] = json.loads((job.folder / REPORT).read_text(encoding="utf-8"))
+        try:
+            report: dict[str, Any] = json.loads((job.folder / REPORT).read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise DamagedError(f"the report of comparison {comparison} is damaged ({error})") from None
         for method in report["methods"]:
             method.setdefault("label", method["method"])  # earlier servers compared each method once
         return report
+
+    def done(self) -> list[Comparison]:
+        """Those that have been made."""
+        return [job for job in self._jobs.values() if job.status is JobStatus.DONE]
+
+    def damaged(self, comparison: str, quarantine: Quarantine, why: str) -> None:
+        """A comparison that was made is there no more."""
+        job = self._jobs.pop(comparison)
+        quarantine.take("comparison", comparison, [job.folder], why)
 
     async def remove(self, comparison: str) -> None:
         """Cancel a comparison that is being made (it stays, cancelled); remove one that is not."""
         job = self.get(comparison)
         if job.status.finished:
             del self._jobs[comparison]
-            await asyncio.to_thread(shutil.rmtree, job.folder)
+            await asyncio.to_thread(shutil.rmtree, job.folder, ignore_errors=True)
         elif not await self._runner.cancel(comparison):
             error = {"code": "cancelled", "message": "cancelled before it was done"}
             with contextlib.suppress(TransitionError):
                 await asyncio.to_thread(job.finish, Outcome(JobStatus.CANCELLED, error=error))
             await self._runner.cancel(comparison)  # where its turn came meanwhile
+            self._runner.pending.remove(comparison)
 
     async def close(self) -> None:
         """End; what is not made is marked interrupted."""
@@ -133,6 +163,10 @@ class Comparisons:
         for job in self._jobs.values():
             if not job.status.finished:
                 await asyncio.to_thread(job.finish, Outcome(JobStatus.INTERRUPTED, error=error))
+
+
+def _key(job: Comparison) -> Key:
+    return Key(job.request.created, job.id)
 
 
 def _write_request(job: Comparison) -> None:

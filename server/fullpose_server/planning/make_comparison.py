@@ -17,11 +17,11 @@ from fullpose.registry import Variant
 from fullpose.resample import resample
 from fullpose.rig import Rig
 from fullpose_server.formats.compare_report import comparison_report
+from fullpose_server.formats.flight_folder import read_arrays
 from fullpose_server.formats.output_file import write_text
 from fullpose_server.pages.compare_page import compare_page
 from fullpose_server.planning.compare_length import check_length, check_samples
 from fullpose_server.planning.compare_request import PAGE, REPORT, read_request
-from fullpose_server.store.trajectories import read_arrays
 
 Progress = Callable[[str, int, int], None]  # label, done, total
 

@@ -20,12 +20,12 @@ from fullpose.rig import Rig
 from fullpose.solution import Solution
 from fullpose.solve import solve_flight
 from fullpose.verify import verify
+from fullpose_server.formats.flight_folder import read_arrays
 from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan, rig_hash, write_plan
 from fullpose_server.formats.report import exceeds, make_report, margins_report, verdict_report, why_infeasible
 from fullpose_server.planning.plan_request import PlanRequest
 from fullpose_server.planning.remedy import find_remedy
 from fullpose_server.planning.remedy_request import RemedyRequest
-from fullpose_server.store.trajectories import read_arrays
 
 Progress = Callable[[str, int, int], None]  # phase, done, total
 _NONE = np.empty((0, 4))

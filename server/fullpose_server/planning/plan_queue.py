@@ -6,7 +6,7 @@ from typing import Any
 
 from fullpose_server.planning.job import Kind, Outcome, Progress
 from fullpose_server.planning.plan_request import PlanRequest
-from fullpose_server.planning.runner import Runner, RunnerStatus
+from fullpose_server.planning.runner import Pending, Runner, RunnerStatus
 from fullpose_server.store.jobs import JobStatus
 from fullpose_server.store.plans import PlanStore
 
@@ -64,11 +64,17 @@ class PlanQueue:
         """End; the running plan is marked interrupted, the queued ones wait for the next server."""
         await self._runner.close()
 
-    def submit(self, plan: str) -> None:
-        """Queue a plan that is in the store."""
-        self._runner.submit(PlanJob(plan, self._plans, self._request))
+    @property
+    def pending(self) -> Pending:
+        """What waits or is in work."""
+        return self._runner.pending
+
+    def submit(self, plan: str, owner: str = "") -> None:
+        """Queue a plan that is in the store; `owner` is who asked for it."""
+        self._runner.submit(PlanJob(plan, self._plans, self._request), owner)
 
     async def cancel(self, plan: str) -> None:
         """End a job. Raises `TransitionError` where there is nothing to cancel."""
         if not await self._runner.cancel(plan):
             await asyncio.to_thread(self._plans.finish, plan, JobStatus.CANCELLED)
+            self._runner.pending.remove(plan)

@@ -27,6 +27,30 @@ class RunnerStatus(StrEnum):
     STOPPED = "stopped"
 
 
+class Pending:
+    """The jobs that wait or are in work, and who asked for each; "" for those of an earlier server."""
+
+    def __init__(self) -> None:
+        self._owners: dict[str, str] = {}
+
+    @property
+    def total(self) -> int:
+        """Of all."""
+        return len(self._owners)
+
+    def of(self, owner: str) -> int:
+        """Of one who asked."""
+        return sum(other == owner for other in self._owners.values())
+
+    def add(self, job: str, owner: str) -> None:
+        """One more."""
+        self._owners[job] = owner
+
+    def remove(self, job: str) -> None:
+        """It has ended, in whatever way."""
+        self._owners.pop(job, None)
+
+
 class _Running:
     """The job in work: whether the worker still has it, whether it was cancelled, and when its end is written."""
 
@@ -49,6 +73,7 @@ class Runner:
         self._name = name
         self._prewarm = prewarm
         self._waiting: asyncio.Queue[Job] = asyncio.Queue()
+        self.pending = Pending()
         self._running: _Running | None = None
         self._worker = WorkerProcess(program or (sys.executable, "-m", "fullpose_server.planning.worker"))
         self._task: asyncio.Task[None] | None = None
@@ -75,8 +100,9 @@ class Runner:
         """Begin to take jobs."""
         self._task = asyncio.create_task(self._run(), name=f"{self._name} runner")
 
-    def submit(self, job: Job) -> None:
-        """Queue a job."""
+    def submit(self, job: Job, owner: str = "") -> None:
+        """Queue a job; `owner` is who asked for it."""
+        self.pending.add(job.id, owner)
         self._waiting.put_nowait(job)
 
     async def cancel(self, job: str) -> bool:
@@ -112,6 +138,7 @@ class Runner:
                 raise
             finally:
                 self._running = None
+                self.pending.remove(job.id)
                 running.written.set()
             if not self._prewarm:
                 await self._worker.kill()

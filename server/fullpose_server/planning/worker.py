@@ -12,36 +12,54 @@ import queue
 import sys
 import threading
 import time
+from collections.abc import Callable, Mapping
 from typing import IO, Any
 
 from fullpose.errors import SolverError
 from fullpose_server.errors import ServerError, job_code
 from fullpose_server.planning.job import Kind
 
+Progress = Callable[[str, int, int], None]  # phase, done, total
+Maker = Callable[[Any, Progress], Mapping[str, Any]]
+
 REPORTS_S = 0.05  # shortest time between two reports of progress
 
 
 def main() -> None:
-    """Answer requests until stdin ends."""
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # whatever prints must not write into the protocol
-    os.nice(5)  # a rig's loop and the server come first
+    """Make plans and comparisons until stdin ends."""
+    serve(_makers, _failure)
+
+
+def _makers() -> Mapping[str, Maker]:
     # Numba and SciPy: a second that start-up hides.
     from fullpose_server.planning.make_comparison import make_comparison_folder
     from fullpose_server.planning.make_plan import make_plan_folder
 
-    makers = {Kind.PLAN: make_plan_folder, Kind.COMPARISON: make_comparison_folder}
+    return {Kind.PLAN: make_plan_folder, Kind.COMPARISON: make_comparison_folder}
+
+
+def _failure(error: Exception) -> dict[str, Any]:
+    if isinstance(error, (SolverError, ServerError)):
+        return {"code": job_code(error), "message": str(error)}
+    return {"code": "internal", "message": f"{type(error).__name__}: {error}"}  # the server logs it
+
+
+def serve(
+    load: Callable[[], Mapping[str, Maker]], failure: Callable[[Exception], dict[str, Any]], niceness: int = 5
+) -> None:
+    """Answer requests until stdin ends: each by the maker of its kind, or by what its failure is in words."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # whatever prints must not write into the protocol
+    os.nice(niceness)  # a rig's loop and the server come first
+    makers = load()
     _say(answers, {"ready": True})
     for line in iter(_requests().get, None):
         message = json.loads(line)
         reporter = _Reporter(answers)
         try:
-            result = makers[Kind(message["kind"])](message["request"], reporter.report)
-        except (SolverError, ServerError) as error:
-            _say(answers, {"failed": {"code": job_code(error), "message": str(error)}})
-        except Exception as error:  # noqa: BLE001 - the job failed, the process goes on; the server logs it
-            text = f"{type(error).__name__}: {error}"
-            _say(answers, {"failed": {"code": "internal", "message": text}})
+            result = makers[message["kind"]](message["request"], reporter.report)
+        except Exception as error:  # noqa: BLE001 - the job failed, the process goes on
+            _say(answers, {"failed": failure(error)})
         else:
             _say(answers, {"done": result})
 
@@ -72,7 +90,7 @@ class _Reporter:
             _say(self._answers, {"progress": [phase, done, total]})
 
 
-def _say(answers: IO[str], message: dict[str, Any]) -> None:
+def _say(answers: IO[str], message: Mapping[str, Any]) -> None:
     answers.write(json.dumps(message) + "\n")
     answers.flush()
 

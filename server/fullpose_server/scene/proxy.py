@@ -6,7 +6,7 @@ inclusion's dependencies. viser's page finds its WebSocket from its own address,
 
 import asyncio
 import http.client
-from urllib.parse import urlsplit
+from urllib.parse import quote, urlsplit
 
 import anyio
 import websockets
@@ -62,8 +62,8 @@ async def page(request: Request, rig: str, path: str) -> Response:
     if _foreign(request):
         return PlainTextResponse("a scene is shown from this server only\n", status_code=400)
     try:
-        status, headers, body = await anyio.to_thread.run_sync(_get, port, "/" + path)
-    except OSError:
+        status, headers, body = await anyio.to_thread.run_sync(_get, port, "/" + quote(path))
+    except (OSError, http.client.HTTPException):
         return PlainTextResponse(f"the scene of {rig!r} does not answer\n", status_code=502)
     if headers.get("content-type", "").startswith("text/html"):
         body = body.replace(b"</head>", HIDE_CHROME + b"</head>", 1)

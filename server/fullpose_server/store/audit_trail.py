@@ -6,6 +6,7 @@ from collections import deque
 
 from sqlalchemy.exc import SQLAlchemyError
 
+from fullpose_server.errors import ServerError
 from fullpose_server.store.audit import AuditEntry, AuditLog
 
 MOST = 10_000
@@ -68,7 +69,7 @@ class AuditTrail:
                 entry = self._entries[0]
             try:
                 self._audit.write(entry)
-            except (SQLAlchemyError, OSError) as cause:
+            except (SQLAlchemyError, ServerError, OSError) as cause:
                 self._error = str(cause).splitlines()[0]
                 with self._changed:
                     if self._ending:

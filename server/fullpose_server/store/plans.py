@@ -3,14 +3,15 @@
 import shutil
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 from uuid import uuid4
 
-from sqlalchemy import select
+from sqlalchemy import Select, select
 
 from fullpose_server.errors import NotFoundError, TransitionError
 from fullpose_server.store.database import Database
 from fullpose_server.store.jobs import UNFINISHED, JobStatus
+from fullpose_server.store.keyset import Key, newest_first
 from fullpose_server.store.tables import PlanRow, TrajectoryRow
 
 
@@ -69,15 +70,22 @@ class PlanStore:
             raise NotFoundError("plan", plan)
         return row
 
-    def all(self, trajectory: str | None = None, rig: str | None = None) -> list[PlanRow]:
-        """Newest first."""
-        query = select(PlanRow).order_by(PlanRow.created.desc())
+    def all(
+        self,
+        trajectory: str | None = None,
+        rig: str | None = None,
+        before: Key | None = None,
+        limit: int | None = None,
+    ) -> list[tuple[PlanRow, str]]:
+        """Newest first, those after the plan at `before`, at most `limit`; each with its flight's name."""
+        query = cast(Select[Any], select(PlanRow, TrajectoryRow.name).join(TrajectoryRow))
+        query = newest_first(query, PlanRow, PlanRow.id, before, limit)
         if trajectory is not None:
             query = query.where(PlanRow.trajectory == trajectory)
         if rig is not None:
             query = query.where(PlanRow.rig == rig)
         with self._database.begin() as session:
-            return list(session.scalars(query))
+            return [(row, name) for row, name in session.execute(query)]
 
     def folder(self, plan: str) -> Path:
         """Where the plan's arrays are."""
@@ -113,8 +121,21 @@ class PlanStore:
             )
             ids = [row.id for row in queued]
         for draft in self.root.glob(".*"):  # what a planner was writing
-            shutil.rmtree(draft)
+            shutil.rmtree(draft, ignore_errors=True)
         return ids
+
+    def done(self) -> list[str]:
+        """The ids of the plans that have been made."""
+        with self._database.begin() as session:
+            return list(session.scalars(select(PlanRow.id).where(PlanRow.status == JobStatus.DONE)))
+
+    def damaged(self, plan: str, why: str) -> None:
+        """A plan that was made is there no more: it has failed, and its row says why."""
+        with self._database.begin() as session:
+            row = session.get(PlanRow, plan)
+            if row is not None and row.status == JobStatus.DONE:
+                row.status, row.result = JobStatus.FAILED, None
+                row.error = {"code": "damaged", "message": f"its files were damaged, and moved aside: {why}"}
 
     def remove(self, plan: str) -> None:
         """Remove a finished plan. Raises `NotFoundError`, or `TransitionError` while it is being made."""

@@ -25,6 +25,7 @@ class TrajectoryRow(Table):
     """A stored flight; its arrays are in trajectories/<sha256>/."""
 
     __tablename__ = "trajectories"
+    __table_args__ = (Index("ix_trajectories_created", "created", "sha256"),)
 
     sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
     source_sha256: Mapped[str] = mapped_column(String(64))
@@ -46,7 +47,12 @@ class PlanRow(Table):
     """A plan and its job; its arrays are in plans/<id>/."""
 
     __tablename__ = "plans"
-    __table_args__ = (Index("ix_plans_status", "status"),)
+    __table_args__ = (
+        Index("ix_plans_status", "status"),
+        Index("ix_plans_created", "created", "id"),
+        Index("ix_plans_rig", "rig", "created", "id"),
+        Index("ix_plans_trajectory", "trajectory", "created", "id"),
+    )
 
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
     trajectory: Mapped[str] = mapped_column(ForeignKey("trajectories.sha256"))

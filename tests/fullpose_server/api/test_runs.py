@@ -11,10 +11,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from fullpose_server.runtime.contract.telemetry import SAMPLE
-from fullpose_server.runtime.recording.mcap_reader import is_whole, read_samples
+from fullpose_server.runtime.recording.mcap_reader import is_complete, read_samples
 from fullpose_server.runtime.recording.mcap_writer import RunRecord
 from fullpose_server.runtime.recording.run_index import RunFiles
-from tests.fullpose_server.api.live_server import LiveServer, Operator
+from tests.fullpose_server.api.live_server import LiveServer, Operator, live_server
 from tests.fullpose_server.api.test_stream import received
 from tests.support.sockets import connect
 from tests.support.waiting import until
@@ -44,7 +44,7 @@ def test_csv_parquet_and_mcap_are_the_same_samples(server: LiveServer, run: str,
     assert list(lines[0]) == table.column_names
     np.testing.assert_array_equal([float(line["demand_base_deg"]) for line in lines], rows["demand"][:, 0])
     assert {line["state"] for line in lines} >= {"positioning", "running"}
-    until(lambda: not list((server.settings.data_dir / "exports").iterdir()))  # it goes once the last byte is sent
+    until(lambda: not list((server.settings.data_dir / "uploads").iterdir()))  # it goes once the last byte is sent
 
 
 def test_what_is_no_run(server: LiveServer, run: str) -> None:
@@ -91,7 +91,7 @@ def test_a_damaged_record_is_listed_exported_and_spoils_nothing(server: LiveServ
         assert f'filename="{path.name}"' in answer.headers["content-disposition"]
         repaired = server.settings.data_dir / "repaired.mcap"
         repaired.write_bytes(answer.content)
-        assert is_whole(repaired)
+        assert is_complete(repaired)
         np.testing.assert_array_equal(read_samples(repaired)["seq"], read_samples(path)["seq"])
         assert len(read_samples(path)) == line["samples"]
         assert server.http.get(f"/runs/{path.stem}/export").text.count("\n") == line["samples"] + 1
@@ -179,3 +179,32 @@ def test_a_run_that_is_being_written_is_not_read_through_and_one_that_was_cut_of
     np.testing.assert_array_equal(read_samples(path, 0, 4097)["seq"], np.arange(1, 4098))
     record.finish()
     assert runs.get(path.stem).complete
+
+
+def test_a_run_can_be_pinned_and_deleted(server: LiveServer, run: str) -> None:
+    assert server.http.get(f"/runs/{run}").json()["pinned"] is False
+    assert server.http.put(f"/runs/{run}/pin").status_code == 204
+    assert server.http.get("/runs").json()[0]["pinned"] is True
+    refused = server.http.delete(f"/runs/{run}")
+    assert (refused.status_code, refused.json()["type"]) == (409, "urn:fullpose:problem:in-use")
+    assert server.http.delete(f"/runs/{run}/pin").status_code == 204
+    assert server.http.delete(f"/runs/{run}").status_code == 204
+    assert server.http.get(f"/runs/{run}").status_code == 404
+    assert server.http.delete(f"/runs/{run}").status_code == 404
+
+
+def test_runs_come_in_pages(tmp_path: Path) -> None:
+    names = [f"20260101T00000{k}-vertical-4-00000{k}" for k in range(5)]
+    with live_server(tmp_path, max_page_rows=3) as server:
+        for name in names:
+            (tmp_path / "runs" / f"{name}.mcap").write_bytes(b"no record")
+            os.utime(tmp_path / "runs" / f"{name}.mcap", (1.0, 1.0))
+        seen, path = [], "/runs?limit=2"
+        while path:
+            page = server.http.get(path if path.startswith("/runs") else server.url + path)
+            assert len(page.json()) <= 2
+            seen += [run["id"] for run in page.json()]
+            path = page.links.get("next", {}).get("url", "")
+        assert seen == names[::-1]
+        assert server.http.get("/runs?limit=4").status_code == 422
+        assert server.http.get("/runs?before=x").status_code == 422

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from fullpose_server.cli import build
 from fullpose_server.runtime.contract.telemetry import SAMPLE
-from fullpose_server.runtime.recording.mcap_reader import is_whole, read_samples
+from fullpose_server.runtime.recording.mcap_reader import is_complete, read_samples
 from fullpose_server.runtime.recording.mcap_writer import RunRecord
 
 
@@ -34,7 +34,7 @@ def test_mcap_is_whole_whatever_the_record_is(record: Path, tmp_path: Path) -> N
     record.write_bytes(record.read_bytes()[: record.stat().st_size // 2] + bytes(4096))
     done = CliRunner().invoke(build(), arguments)
     assert done.exit_code == 0, done.output
-    assert is_whole(out)
+    assert is_complete(out)
     kept = read_samples(out)["seq"]
     assert 0 < len(kept) < 1000
     np.testing.assert_array_equal(kept, read_samples(record)["seq"])

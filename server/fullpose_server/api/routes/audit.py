@@ -6,6 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from fullpose_server.api.deps import ServicesDep
+from fullpose_server.api.schemas.base import Cursor
 from fullpose_server.api.schemas.records import AuditOut
 
 WRITTEN_S = 1.0
@@ -16,7 +17,7 @@ router = APIRouter(prefix="/audit", tags=["audit"])
 def list_audit(
     services: ServicesDep,
     rig: str | None = None,
-    before: Annotated[int | None, Query(description="Id to go on from, backward")] = None,
+    before: Annotated[Cursor | None, Query(description="Id to go on from, backward")] = None,
     limit: Annotated[int, Query(ge=1, le=1000)] = 100,
 ) -> list[AuditOut]:
     """Every command, accepted or refused, newest first."""

@@ -4,52 +4,64 @@ import asyncio
 import time
 from datetime import UTC, datetime
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
+from pydantic import TypeAdapter
 from starlette.responses import FileResponse
 
 from fullpose.compare import variants
 from fullpose.registry import Variant, parse_variant, variant
-from fullpose_server.api.deps import Services, ServicesDep
+from fullpose_server.api.deps import Services, ServicesDep, WhoDep
+from fullpose_server.api.openapi import BUSY
+from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.progress import progress_out
+from fullpose_server.api.quotas import check_span, queue_slot
 from fullpose_server.api.schemas.compare import CompareIn, ComparisonOut, ComparisonReportOut, MethodIn
 from fullpose_server.formats.start_pose import start_pose
 from fullpose_server.planning.compare_length import check_length
 from fullpose_server.planning.compare_request import PAGE, CompareRequest
 from fullpose_server.planning.comparisons import Comparison
 from fullpose_server.store.jobs import JobStatus
+from fullpose_server.store.keyset import Key
 
 router = APIRouter(prefix="/compare", tags=["compare"])
+_LIST = TypeAdapter(list[ComparisonOut])
 
 
-@router.post("", status_code=202)
-async def add_comparison(body: CompareIn, response: Response, services: ServicesDep) -> ComparisonOut:
+@router.post("", status_code=202, responses=BUSY)
+async def add_comparison(body: CompareIn, response: Response, services: ServicesDep, who: WhoDep) -> ComparisonOut:
     """Ask for a comparison at the rig's own rate; poll it until its status is done, failed or cancelled."""
-    asked = variants([_variant(method) for method in body.methods])
-    entry = await asyncio.to_thread(services.rigs.get, body.rig)
-    trajectory = await asyncio.to_thread(services.trajectories.get, body.trajectory)
-    rate_hz = services.settings.rig_rate_hz
-    check_length(trajectory.duration_s, rate_hz, len(asked))
-    start = None if body.start_deg is None else start_pose(body.start_deg, entry.rig, "start_deg")
-    request = CompareRequest(
-        trajectory_sha256=body.trajectory,
-        trajectory=str(services.trajectories.folder(body.trajectory)),
-        name=trajectory.name,
-        rig=entry.rig,
-        methods=asked,
-        rate_hz=rate_hz,
-        start=start,
-        created=time.time(),
-    )
-    job = await services.comparisons.submit(request)
-    response.headers["Location"] = f"/api/v1/compare/{job.id}"
-    return _out(services, job)
+    services.disk.check()
+    with queue_slot(services.comparisons.pending, who, services.settings):
+        asked = variants([_variant(method) for method in body.methods])
+        entry = await asyncio.to_thread(services.rigs.get, body.rig)
+        trajectory = await asyncio.to_thread(services.trajectories.get, body.trajectory)
+        rate_hz = services.settings.rig_rate_hz
+        check_length(trajectory.duration_s, rate_hz, len(asked))
+        check_span(trajectory.duration_s, services.settings)
+        start = None if body.start_deg is None else start_pose(body.start_deg, entry.rig, "start_deg")
+        request = CompareRequest(
+            trajectory_sha256=body.trajectory,
+            trajectory=str(services.trajectories.folder(body.trajectory)),
+            name=trajectory.name,
+            rig=entry.rig,
+            methods=asked,
+            rate_hz=rate_hz,
+            start=start,
+            created=time.time(),
+        )
+        job = await services.comparisons.submit(request, who)
+        response.headers["Location"] = f"/api/v1/compare/{job.id}"
+        return _out(services, job)
 
 
-@router.get("")
-async def list_comparisons(services: ServicesDep) -> list[ComparisonOut]:
-    """All comparisons, newest first, without their reports."""
-    return [_out(services, job) for job in services.comparisons.all()]
+@router.get("", response_model=list[ComparisonOut], responses=LINKED)
+async def list_comparisons(request: Request, services: ServicesDep, page: PageDep) -> Response:
+    """Comparisons, newest first, a page at a time, without their reports."""
+    found = services.comparisons.all(page.before, page.wanted)
+    jobs = page.cut(found)
+    last = Key(jobs[-1].request.created, jobs[-1].id) if jobs else None
+    return page.answer(request, _LIST.dump_json([_out(services, job) for job in jobs]), len(found), last)
 
 
 @router.get("/{comparison}", response_model=ComparisonOut)

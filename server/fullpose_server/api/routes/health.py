@@ -7,7 +7,7 @@ from fastapi import APIRouter, Response
 
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.metrics import exposition
-from fullpose_server.api.schemas.records import HealthOut, ServerLimits
+from fullpose_server.api.schemas.records import DiskOut, HealthOut, ServerLimits
 from fullpose_server.api.session_view import health_out
 from fullpose_server.version import VERSION
 
@@ -19,7 +19,7 @@ async def health(services: ServicesDep) -> HealthOut:
     """How the server, its planner and its rigs do. Always 200: `status` and `warnings` say what is wrong."""
     settings = services.settings
     rigs = {host.name: health_out(host.snapshot().health) for host in services.hosts.all()}
-    wrong = _wrong(services) + [f"not a rig: {error}" for error in await asyncio.to_thread(services.rigs.broken)]
+    wrong = _wrong(services) + await asyncio.to_thread(_stored, services)
     return HealthOut(
         status="degraded" if wrong else "ok",
         version=VERSION,
@@ -28,6 +28,7 @@ async def health(services: ServicesDep) -> HealthOut:
         authenticated=False,
         planner=services.queue.status,
         limits=ServerLimits(max_upload_bytes=settings.max_upload_bytes, max_solve_samples=settings.max_solve_samples),
+        disk=DiskOut(free_bytes=services.disk.free_bytes(), alarm_bytes=services.disk.alarm_bytes),
         rigs=rigs,
         warnings=wrong + _notes(services),
     )
@@ -38,6 +39,12 @@ async def metrics(services: ServicesDep) -> Response:
     """Prometheus text."""
     body, media_type = exposition(services)
     return Response(body, media_type=media_type)
+
+
+def _stored(services: Services) -> list[str]:
+    """What is wrong on the disk."""
+    found = [f"not a rig: {error}" for error in services.rigs.broken()]
+    return found + services.disk.findings() + services.quarantine.findings() + services.upkeep.findings()
 
 
 def _wrong(services: Services) -> list[str]:

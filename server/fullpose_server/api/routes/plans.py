@@ -6,14 +6,17 @@ from datetime import UTC, datetime
 from typing import Annotated, Any
 
 import numpy as np
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import TypeAdapter
 
 from fullpose.registry import DEFAULT, REGISTRY, method_options, option_defaults
-from fullpose.resample import check_length
 from fullpose.rig import FRAMES
-from fullpose_server.api.deps import Services, ServicesDep
+from fullpose_server.api.deps import Services, ServicesDep, WhoDep
+from fullpose_server.api.openapi import BUSY
+from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.progress import progress_out
+from fullpose_server.api.quotas import check_span, queue_slot
 from fullpose_server.api.schemas.plans import (
     JobErrorOut,
     MethodOut,
@@ -26,14 +29,17 @@ from fullpose_server.api.schemas.plans import (
     ReportOut,
 )
 from fullpose_server.errors import TransitionError
-from fullpose_server.formats.plan_folder import read_plan, rig_hash
+from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.start_pose import start_pose
 from fullpose_server.pages.thin import thin
 from fullpose_server.planning.plan_request import check_frame
+from fullpose_server.planning.scrub import open_plan
 from fullpose_server.store.jobs import JobStatus
+from fullpose_server.store.keyset import Key
 from fullpose_server.store.tables import PlanRow
 
 router = APIRouter(tags=["plans"])
+_LIST = TypeAdapter(list[PlanOut])
 
 
 @router.get("/methods")
@@ -45,34 +51,41 @@ def list_methods() -> list[MethodOut]:
     ]
 
 
-@router.post("/plans", status_code=202)
-async def add_plan(body: PlanIn, response: Response, services: ServicesDep) -> PlanOut:
+@router.post("/plans", status_code=202, responses=BUSY)
+async def add_plan(body: PlanIn, response: Response, services: ServicesDep, who: WhoDep) -> PlanOut:
     """Ask for a plan; poll it until its status is done, failed or cancelled."""
-    entry = await asyncio.to_thread(services.rigs.get, body.rig)
-    method_options(body.method, dict(body.options))
-    flight = await asyncio.to_thread(services.trajectories.get, body.trajectory)
-    check_length(flight.duration_s, services.settings.rig_rate_hz)
-    if body.start_deg is not None:
-        start_pose(body.start_deg, entry.rig, "start_deg")
-    row = await asyncio.to_thread(
-        services.plans.add,
-        trajectory=body.trajectory,
-        rig=body.rig,
-        rig_hash=rig_hash(entry.rig),
-        method=body.method,
-        options=dict(body.options),
-        start_deg=None if body.start_deg is None else list(body.start_deg),
-        rate_hz=services.settings.rig_rate_hz,
-    )
-    services.queue.submit(row.id)
-    response.headers["Location"] = f"/api/v1/plans/{row.id}"
-    return await asyncio.to_thread(_out, services, row)
+    services.disk.check()
+    with queue_slot(services.queue.pending, who, services.settings):
+        entry = await asyncio.to_thread(services.rigs.get, body.rig)
+        method_options(body.method, dict(body.options))
+        flight = await asyncio.to_thread(services.trajectories.get, body.trajectory)
+        check_span(flight.duration_s, services.settings)
+        if body.start_deg is not None:
+            start_pose(body.start_deg, entry.rig, "start_deg")
+        row = await asyncio.to_thread(
+            services.plans.add,
+            trajectory=body.trajectory,
+            rig=body.rig,
+            rig_hash=rig_hash(entry.rig),
+            method=body.method,
+            options=dict(body.options),
+            start_deg=None if body.start_deg is None else list(body.start_deg),
+            rate_hz=services.settings.rig_rate_hz,
+        )
+        services.queue.submit(row.id, who)
+        response.headers["Location"] = f"/api/v1/plans/{row.id}"
+        return await asyncio.to_thread(_out, services, row)
 
 
-@router.get("/plans")
-def list_plans(services: ServicesDep, trajectory: str | None = None, rig: str | None = None) -> list[PlanOut]:
-    """All plans, newest first."""
-    return [_out(services, row) for row in services.plans.all(trajectory, rig)]
+@router.get("/plans", response_model=list[PlanOut], responses=LINKED)
+def list_plans(
+    request: Request, services: ServicesDep, page: PageDep, trajectory: str | None = None, rig: str | None = None
+) -> Response:
+    """Plans, newest first, a page at a time."""
+    found = services.plans.all(trajectory, rig, page.before, page.wanted)
+    rows = page.cut(found)
+    last = Key(rows[-1][0].created, rows[-1][0].id) if rows else None
+    return page.answer(request, _LIST.dump_json([_out(services, *row) for row in rows]), len(found), last)
 
 
 @router.get("/plans/{plan}")
@@ -81,30 +94,32 @@ def get_plan(plan: str, services: ServicesDep) -> PlanOut:
     return _out(services, services.plans.get(plan))
 
 
-@router.post("/plans/{plan}/remedies", status_code=202)
-async def add_remedy(plan: str, body: RemedyIn, response: Response, services: ServicesDep) -> PlanOut:
+@router.post("/plans/{plan}/remedies", status_code=202, responses=BUSY)
+async def add_remedy(plan: str, body: RemedyIn, response: Response, services: ServicesDep, who: WhoDep) -> PlanOut:
     """Search what would make this plan's flight fit its rig: a plan of its own, with progress and cancel as any other.
 
     It is planned with method plan. What was changed is in its `remedy`; it can be loaded like the rest, but for a
     relaxed limit, which the rig must be given first.
     """
-    of = await asyncio.to_thread(services.plans.get, plan)
-    entry = await asyncio.to_thread(services.rigs.get, of.rig)
-    check_frame(body.frame, entry.rig)
-    row = await asyncio.to_thread(
-        services.plans.add,
-        trajectory=of.trajectory,
-        rig=of.rig,
-        rig_hash=rig_hash(entry.rig),
-        method=DEFAULT,  # every trial of a remedy is the planner's
-        options=of.options if of.method == DEFAULT else {},
-        start_deg=of.start_deg,
-        rate_hz=services.settings.rig_rate_hz,
-        remedy={"of": plan, **body.model_dump()},
-    )
-    services.queue.submit(row.id)
-    response.headers["Location"] = f"/api/v1/plans/{row.id}"
-    return await asyncio.to_thread(_out, services, row)
+    services.disk.check()
+    with queue_slot(services.queue.pending, who, services.settings):
+        of = await asyncio.to_thread(services.plans.get, plan)
+        entry = await asyncio.to_thread(services.rigs.get, of.rig)
+        check_frame(body.frame, entry.rig)
+        row = await asyncio.to_thread(
+            services.plans.add,
+            trajectory=of.trajectory,
+            rig=of.rig,
+            rig_hash=rig_hash(entry.rig),
+            method=DEFAULT,  # every trial of a remedy is the planner's
+            options=of.options if of.method == DEFAULT else {},
+            start_deg=of.start_deg,
+            rate_hz=services.settings.rig_rate_hz,
+            remedy={"of": plan, **body.model_dump()},
+        )
+        services.queue.submit(row.id, who)
+        response.headers["Location"] = f"/api/v1/plans/{row.id}"
+        return await asyncio.to_thread(_out, services, row)
 
 
 @router.get("/plans/{plan}/samples", responses={409: {"description": "The plan is not done"}})
@@ -135,7 +150,8 @@ async def remove_plan(plan: str, services: ServicesDep) -> None:
         raise ApiError(409, "job-status", str(error)) from None
 
 
-def _out(services: Services, row: PlanRow) -> PlanOut:
+def _out(services: Services, row: PlanRow, name: str | None = None) -> PlanOut:
+    name = services.trajectories.get(row.trajectory).name if name is None else name
     result: dict[str, Any] = row.result or {}
     refusal = result.get("refusal")
     return PlanOut.model_validate(
@@ -144,7 +160,7 @@ def _out(services: Services, row: PlanRow) -> PlanOut:
             "status": row.status,
             "progress": progress_out(JobStatus(row.status), services.queue.progress(row.id)),
             "trajectory": row.trajectory,
-            "trajectory_name": services.trajectories.get(row.trajectory).name,
+            "trajectory_name": name,
             "rig": row.rig,
             "rig_hash": row.rig_hash,
             "method": row.method,
@@ -185,7 +201,7 @@ def _remedy(asked: dict[str, Any], found: dict[str, Any]) -> RemedyOut:
 
 
 def _samples(plan: str, services: Services, points: int) -> PlanSamples:
-    stored = read_plan(services.plans.folder(plan), verify=False)
+    stored = open_plan(plan, services.plans, services.quarantine)
     info = stored.info
     dt = 1.0 / info.rate_hz
     angles = np.rad2deg(stored.angles)

@@ -2,34 +2,43 @@
 
 import asyncio
 from datetime import UTC, datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 from uuid import uuid4
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
+from pydantic import TypeAdapter
 from starlette.background import BackgroundTask
-from starlette.responses import FileResponse
+from starlette.responses import FileResponse, Response
 
-from fullpose_server.api.deps import ServicesDep
+from fullpose_server.api.deps import Services, ServicesDep
+from fullpose_server.api.paging import LINKED, PageDep
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.records import RunOut
 from fullpose_server.runtime.recording.export import write_export
 from fullpose_server.runtime.recording.mcap_reader import is_complete
-from fullpose_server.runtime.recording.run_index import RunSummary
+from fullpose_server.runtime.recording.run_index import RunInUseError, RunSummary
+from fullpose_server.store.keyset import Key
 
 router = APIRouter(prefix="/runs", tags=["runs"])
+_LIST = TypeAdapter(list[RunOut])
 Format = Literal["csv", "parquet", "mcap"]
+_IN_USE: dict[int | str, dict[str, Any]] = {409: {"description": "It is pinned, or being written"}}
 MEDIA_TYPES = {"csv": "text/csv", "parquet": "application/vnd.apache.parquet", "mcap": "application/octet-stream"}
 
 
-@router.get("")
-def list_runs(services: ServicesDep, rig: str | None = None) -> list[RunOut]:
-    """All runs and incidents, newest first; a record that cannot be read is listed with its error."""
-    return [_out(run) for run in services.runs.all(rig)]
+@router.get("", response_model=list[RunOut], responses=LINKED)
+def list_runs(request: Request, services: ServicesDep, page: PageDep, rig: str | None = None) -> Response:
+    """Runs and incidents, newest first, a page at a time; a record that cannot be read is listed with its error."""
+    found = services.runs.all(rig, None if page.before is None else page.before.id, page.wanted)
+    runs = page.cut(found)
+    last = Key(runs[-1].started or 0.0, runs[-1].id) if runs else None
+    return page.answer(request, _LIST.dump_json([_out(services, run) for run in runs]), len(found), last)
 
 
 @router.get("/{run}")
 def get_run(run: str, services: ServicesDep) -> RunOut:
     """One run."""
-    return _out(services.runs.get(run))
+    return _out(services, services.runs.get(run))
 
 
 @router.get(
@@ -42,11 +51,10 @@ async def export_run(
 ) -> FileResponse:
     """The whole run as a file: every sample of the record; as MCAP always with an index, repaired where need be."""
     record = services.runs.path(run)
+    services.disk.check()
     if kind == "mcap" and await asyncio.to_thread(is_complete, record):
         return FileResponse(record, media_type=MEDIA_TYPES[kind], filename=record.name)
-    folder = services.settings.data_dir / "exports"
-    folder.mkdir(exist_ok=True)
-    draft = folder / uuid4().hex
+    draft = services.uploads / uuid4().hex
     try:
         await asyncio.to_thread(write_export, record, draft, kind)
     except BaseException:
@@ -56,8 +64,33 @@ async def export_run(
     return FileResponse(draft, media_type=MEDIA_TYPES[kind], filename=f"{run}.{kind}", background=done)
 
 
-def _out(run: RunSummary) -> RunOut:
+@router.delete("/{run}", status_code=204, responses=_IN_USE)
+async def remove_run(run: str, services: ServicesDep) -> None:
+    """Remove a run that is neither pinned nor being written."""
+    for host in services.hosts.all():
+        if host.snapshot().run_id == run:
+            raise ApiError(409, "in-use", f"run {run} is being flown on rig {host.name}")
+    try:
+        await asyncio.to_thread(services.runs.remove, run)
+    except RunInUseError as error:
+        raise ApiError(409, "in-use", str(error)) from None
+
+
+@router.put("/{run}/pin", status_code=204)
+def pin_run(run: str, services: ServicesDep) -> None:
+    """Keep a run: retention passes it over, and it cannot be deleted."""
+    services.runs.pin(run, pinned=True)
+
+
+@router.delete("/{run}/pin", status_code=204)
+def unpin_run(run: str, services: ServicesDep) -> None:
+    """Keep it no longer than any other."""
+    services.runs.pin(run, pinned=False)
+
+
+def _out(services: Services, run: RunSummary) -> RunOut:
     return RunOut(
+        pinned=services.runs.pinned(run.id),
         id=run.id,
         rig=run.rig,
         incident=run.incident,

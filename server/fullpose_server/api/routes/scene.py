@@ -9,7 +9,7 @@ from fastapi import APIRouter
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.scene import ScenePoseIn, ScenePoseOut
-from fullpose_server.formats.plan_folder import read_plan
+from fullpose_server.planning.scrub import open_plan
 
 router = APIRouter(prefix="/rigs/{rig}/scene", tags=["scene"])
 
@@ -30,7 +30,7 @@ def _show(services: Services, rig: str, wanted: ScenePoseIn | None) -> ScenePose
         raise ApiError(409, "other-rig", f"plan {row.id} is for rig {row.rig}, not {rig}")
     if row.status != "done":
         raise ApiError(409, "not-done", f"plan {row.id} is {row.status}: it has no poses")
-    plan = read_plan(services.plans.folder(row.id), verify=False)
+    plan = open_plan(row.id, services.plans, services.quarantine)
     index = round(wanted.time_s * plan.info.rate_hz) + plan.info.lead_in_samples
     if not 0 <= index < plan.info.samples:
         first = -plan.info.lead_in_samples / plan.info.rate_hz

@@ -1,47 +1,43 @@
 """Solving without a session: POST /solve for a batch, the WebSocket /solve for a stream."""
 
 import asyncio
-import time
-from collections.abc import Mapping
-from typing import Any
+from uuid import uuid4
 
 import numpy as np
-from fastapi import APIRouter, Request, Response, WebSocket
-from fastapi.exceptions import RequestValidationError
+from fastapi import APIRouter, Request, WebSocket
 from pydantic import TypeAdapter, ValidationError
+from starlette.background import BackgroundTask
+from starlette.responses import FileResponse
 
 from fullpose.errors import InputError, SolverError
 from fullpose.flight import bad_time, check_flight
 from fullpose.methods.base import Stepper
 from fullpose.registry import find_step, method_options
-from fullpose.rig import Rig
-from fullpose.solve import solve
-from fullpose.verify import attitude_errors, payload_attitudes, verify
+from fullpose.verify import attitude_errors, payload_attitudes
 from fullpose_server.api.attitudes import attitudes, limited_list
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import problem_of
+from fullpose_server.api.offload.work import SolveRequest, Work
+from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.problems import ApiError
-from fullpose_server.api.schemas.plans import ReportOut
 from fullpose_server.api.schemas.solve import (
     Opened,
     OpenSolve,
     Solved,
-    SolveIn,
     SolveMessageIn,
     SolveOut,
     SolveProblem,
     SolveSamples,
 )
-from fullpose_server.api.streams.tasks import GoneError, close_for, send_text
+from fullpose_server.api.streams.tasks import NOT_TEXT, UNSUPPORTED, GoneError, close_for, send_text
+from fullpose_server.api.uploads import receive_body
 from fullpose_server.errors import ServerError
-from fullpose_server.formats.report import make_report
 from fullpose_server.formats.start_pose import start_pose
 
 router = APIRouter(tags=["solve"])
 # Characters of a message of samples that the event loop itself answers, some thirty of them: a millisecond.
 QUICK = 4096
 _INCOMING: TypeAdapter[SolveMessageIn] = TypeAdapter(SolveMessageIn)
-_INVALID: dict[int | str, dict[str, Any]] = {422: {"description": "Validation Error"}}
 _BODY = {"required": True, "content": {"application/json": {"schema": {"$ref": "#/components/schemas/SolveIn"}}}}
 
 
@@ -49,45 +45,22 @@ _BODY = {"required": True, "content": {"application/json": {"schema": {"$ref": "
     "/solve",
     response_model=SolveOut,
     openapi_extra={"requestBody": _BODY},
-    responses=_INVALID,
+    responses=BUSY,
 )
-async def solve_batch(request: Request, services: ServicesDep) -> Response:
+async def solve_batch(request: Request, services: ServicesDep) -> FileResponse:
     """A batch of attitudes in, frame angles and errors out; no session needed."""
-    # Read, solved and written in a thread: a million samples take seconds, and a first solve compiles.
-    answer = await asyncio.to_thread(_solved, await request.body(), services)
-    return Response(answer, media_type="application/json")
-
-
-def _solved(content: bytes, services: Services) -> bytes:
+    body, answer = (services.uploads / uuid4().hex for _ in range(2))
     try:
-        body = SolveIn.model_validate_json(content)
-    except ValidationError as error:
-        raise RequestValidationError([{**one, "loc": ("body", *one["loc"])} for one in error.errors()]) from None
-    most = services.settings.max_solve_samples
-    if len(body.time_s) > most:
-        raise ApiError(413, "too-large", f"{len(body.time_s)} samples: this server solves up to {most} at once")
-    return _solve(body, services.rigs.get(body.rig).rig).model_dump_json().encode()
-
-
-def _solve(body: SolveIn, rig: Rig) -> SolveOut:
-    at, C = attitudes(body)
-    solution = solve(
-        at,
-        C,
-        rig,
-        method=body.method,
-        options=method_options(body.method, dict(body.options)),
-        start=None if body.start_deg is None else np.array(start_pose(body.start_deg, rig, "start_deg")),
-        clock=time.perf_counter,
-    )
-    report = make_report(solution, verify(at, solution.angles, rig, C))
-    return SolveOut.model_construct(
-        time_s=body.time_s,
-        angles_deg=[tuple(row) for row in np.rad2deg(solution.angles).tolist()],
-        error_deg=np.rad2deg(solution.error).tolist(),
-        limited=limited_list(solution.limited),
-        report=ReportOut(**report),
-    )
+        await receive_body(request, body, services.settings.max_json_bytes)
+        asked = SolveRequest(str(body), str(answer), str(services.rigs.folder), services.settings.max_solve_samples)
+        await services.offload.run(Work.SOLVE, asked.to_json())
+    except BaseException:
+        answer.unlink(missing_ok=True)
+        raise
+    finally:
+        body.unlink(missing_ok=True)
+    done = BackgroundTask(answer.unlink, missing_ok=True)
+    return FileResponse(answer, media_type="application/json", background=done)
 
 
 @router.websocket("/solve")
@@ -101,8 +74,12 @@ async def solve_stream(socket: WebSocket, services: ServicesDep) -> None:
     conversation = _Conversation(services)
     try:
         while (frame := await socket.receive())["type"] != "websocket.disconnect":
-            quick = conversation.is_quick(frame)
-            answer = conversation.answer(frame) if quick else await asyncio.to_thread(conversation.answer, frame)
+            text = frame.get("text")
+            if text is None:
+                await close_for(socket, SolveProblem(problem=NOT_TEXT.problem).model_dump_json(), UNSUPPORTED)
+                return
+            quick = conversation.is_quick(text)
+            answer = conversation.answer(text) if quick else await asyncio.to_thread(conversation.answer, text)
             await send_text(socket, answer)
     except GoneError:
         return
@@ -117,17 +94,17 @@ class _Conversation:
         self._services = services
         self._flight: _Flight | None = None
 
-    def is_quick(self, frame: Mapping[str, Any]) -> bool:
+    def is_quick(self, text: str) -> bool:
         """Whether the answer is had sooner than a thread: a few more samples of a flight whose kernels are compiled."""
-        text = frame.get("text")
-        if self._flight is None or not self._flight.begun or text is None:
+        if self._flight is None or not self._flight.begun:
             return False
         return len(text) <= QUICK and '"open"' not in text  # which reads a rig's file
 
-    def answer(self, frame: Mapping[str, Any]) -> str:
-        """The answer to a frame, encoded; what the client did wrong is one too."""
+    def answer(self, text: str) -> str:
+        """The answer to a message, encoded; what the client did wrong is one too."""
         try:
-            return self._answer(_parsed(frame)).model_dump_json()
+            # Not json.loads: it gives up on deep nesting and long numbers in other ways.
+            return self._answer(_INCOMING.validate_json(text)).model_dump_json()
         except (ApiError, SolverError, ServerError, ValidationError) as error:
             return SolveProblem(problem=problem_of(error)).model_dump_json()
 
@@ -138,14 +115,6 @@ class _Conversation:
         if self._flight is None:
             raise ApiError(422, "not-open", "expected an open message before samples")
         return self._flight.solve(message)
-
-
-def _parsed(frame: Mapping[str, Any]) -> OpenSolve | SolveSamples:
-    """The message of a text frame. Raises `ApiError` for a binary frame, `ValidationError`."""
-    text = frame.get("text")
-    if text is None:
-        raise ApiError(422, "validation", "expected a JSON message in a text frame, this one is binary")
-    return _INCOMING.validate_json(text)  # not json.loads: it gives up on deep nesting and long numbers in other ways
 
 
 class _Flight:

@@ -1,29 +1,34 @@
 """Trajectories: uploaded as a file (CSV, Parquet) or as JSON columns, checked, stored by their hash."""
 
 import asyncio
-import hashlib
+import shutil
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 from uuid import uuid4
 
-import numpy as np
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import ValidationError
+from pydantic import TypeAdapter
 
 from fullpose_server.api.deps import Services, ServicesDep
-from fullpose_server.api.problems import ApiError, validation_problem
+from fullpose_server.api.offload.work import ReadRequest, Work
+from fullpose_server.api.openapi import BUSY
+from fullpose_server.api.paging import LINKED, PageDep
+from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Notice
-from fullpose_server.api.schemas.trajectories import TrajectoryIn, TrajectoryOut, TrajectoryPreview
-from fullpose_server.api.uploads import Upload, receive, too_large
+from fullpose_server.api.schemas.trajectories import TrajectoryOut, TrajectoryPreview
+from fullpose_server.api.uploads import receive_body, receive_form
 from fullpose_server.errors import InUseError
-from fullpose_server.formats.trajectory import Convention, Trajectory, euler_deg, from_columns
-from fullpose_server.formats.trajectory_file import read_trajectory, source_format
+from fullpose_server.formats.flight_folder import FlightFacts
+from fullpose_server.formats.trajectory import Convention, euler_deg
 from fullpose_server.pages.thin import thin
+from fullpose_server.store.keyset import Key
 from fullpose_server.store.tables import TrajectoryRow
 
 router = APIRouter(prefix="/trajectories", tags=["trajectories"])
 
+_LIST = TypeAdapter(list[TrajectoryOut])
 _FORM = {
     "type": "object",
     "required": ["file"],
@@ -48,34 +53,67 @@ UPLOAD_BODY = {
     "",
     status_code=201,
     openapi_extra=UPLOAD_BODY,
-    responses={200: {"model": TrajectoryOut, "description": "The very same flight is stored already"}},
+    responses={
+        200: {"model": TrajectoryOut, "description": "The very same flight is stored already"},
+        415: {"description": "Neither a form nor JSON"},
+        **BUSY,
+    },
 )
 async def add_trajectory(request: Request, response: Response, services: ServicesDep) -> TrajectoryOut:
     """Upload a flight. Refused as a whole where anything in it is wrong; the problem names line and column."""
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    folder = services.settings.data_dir / "uploads"
-    folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / uuid4().hex
+    settings = services.settings
+    services.disk.check(_announced(request))
+    source = services.uploads / uuid4().hex
+    folder = await asyncio.to_thread(services.trajectories.draft)
     try:
         if kind == "multipart/form-data":
-            upload = await receive(request, draft, services.settings.max_upload_bytes)
-            row, new = await asyncio.to_thread(_store_file, services, upload, draft)
+            upload = await receive_form(request, source, settings.max_upload_bytes)
+            file = upload.filename or "upload"
+            asked = _read_request(services, source, folder)
+            asked = replace(asked, file=file, convention=_convention(upload.fields.get("convention")))
+            made = await services.offload.run(Work.READ_FILE, asked.to_json())
+            name = upload.fields.get("name", "").strip() or Path(file).stem or file
         elif kind == "application/json":
-            body = await _json(request, services.settings.max_upload_bytes)
-            row, new = await asyncio.to_thread(_store_json, services, body, draft)
+            upload = await receive_body(request, source, settings.max_json_bytes)
+            made = await services.offload.run(Work.READ_JSON, _read_request(services, source, folder).to_json())
+            name = made["name"]
         else:
             raise ApiError(415, "media-type", f"{kind or 'no content type'}: expected multipart/form-data or JSON")
+        facts = FlightFacts.from_json(made["facts"])
+        row, new = await asyncio.to_thread(
+            services.trajectories.adopt, folder, facts, name[:200], source, upload.sha256, made["format"]
+        )
     finally:
-        draft.unlink(missing_ok=True)
+        await asyncio.to_thread(_clear, source, folder)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"{request.url.path}/{row.sha256}"
     return _out(row)
 
 
-@router.get("")
-def list_trajectories(services: ServicesDep) -> list[TrajectoryOut]:
-    """All flights, newest first."""
-    return [_out(row) for row in services.trajectories.all()]
+def _announced(request: Request) -> int:
+    """Bytes that are to come; they are stored twice, as they are and as arrays, of about the same size."""
+    length = request.headers.get("content-length", "")
+    return 2 * int(length) if length.isdecimal() and len(length) < 16 else 0
+
+
+def _read_request(services: Services, source: Path, folder: Path) -> ReadRequest:
+    settings = services.settings
+    return ReadRequest(str(source), str(folder), settings.max_upload_rows, settings.max_upload_columns)
+
+
+def _clear(source: Path, folder: Path) -> None:
+    source.unlink(missing_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+@router.get("", response_model=list[TrajectoryOut], responses=LINKED)
+def list_trajectories(request: Request, services: ServicesDep, page: PageDep) -> Response:
+    """Flights, newest first, a page at a time."""
+    found = services.trajectories.all(page.before, page.wanted)
+    rows = page.cut(found)
+    last = Key(rows[-1].created, rows[-1].sha256) if rows else None
+    return page.answer(request, _LIST.dump_json([_out(row) for row in rows]), len(found), last)
 
 
 @router.get("/{sha256}")
@@ -111,39 +149,6 @@ def remove_trajectory(sha256: str, services: ServicesDep) -> None:
         services.trajectories.remove(sha256)
     except InUseError as error:
         raise ApiError(409, "in-use", str(error)) from None
-
-
-def _store_file(services: Services, upload: Upload, draft: Path) -> tuple[TrajectoryRow, bool]:
-    file = upload.filename or "upload"
-    trajectory = read_trajectory(draft, _convention(upload.fields.get("convention")), file)
-    name = upload.fields.get("name", "").strip() or Path(file).stem or file
-    kind = source_format(draft)
-    return services.trajectories.add(trajectory, name[:200], draft, upload.sha256, kind)
-
-
-def _store_json(services: Services, body: bytes, draft: Path) -> tuple[TrajectoryRow, bool]:
-    try:
-        model = TrajectoryIn.model_validate_json(body)
-    except ValidationError as error:
-        found = validation_problem(error.errors(include_url=False))
-        raise ApiError(422, "validation", found.detail, errors=found.errors) from None
-    columns = {name: np.array(values) for name, values in model.columns().items()}
-    trajectory = _from_json(columns, Convention(model.convention), model.name)
-    draft.write_bytes(body)
-    return services.trajectories.add(trajectory, model.name, draft, hashlib.sha256(body).hexdigest(), "json")
-
-
-def _from_json(columns: dict[str, Any], convention: Convention, name: str) -> Trajectory:
-    return from_columns(columns, convention, name, lambda row: row, unit="sample")
-
-
-async def _json(request: Request, limit: int) -> bytes:
-    body = bytearray()
-    async for chunk in request.stream():
-        body += chunk
-        if len(body) > limit:
-            raise too_large(limit)
-    return bytes(body)
 
 
 def _convention(text: str | None) -> Convention:

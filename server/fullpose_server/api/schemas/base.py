@@ -11,7 +11,18 @@ from fullpose.rig import Frame, Geometry, Limit
 from fullpose.vocabulary import RemedyKind
 
 CLIENT_NAME = r"^[\w.@:+-]{1,64}$"  # of who commands
-Four = tuple[float, float, float, float]
+_INT64 = 2**63  # what database and rig process hold
+# Numbers as JSON has them, in what a client sends: true and "1" are none.
+Number = Annotated[float, Field(strict=True)]
+Integer = Annotated[int, Field(strict=True, ge=-_INT64, lt=_INT64)]
+Ordinal = Annotated[int, Field(strict=True, ge=0, lt=_INT64)]
+Truth = Annotated[bool, Field(strict=True)]
+Word = Annotated[str, Field(max_length=64)]
+Four = tuple[Number, Number, Number, Number]
+Three = tuple[Number, Number, Number]
+Cursor = Annotated[int, Field(ge=0, lt=_INT64)]  # of a query, where all is text
+OptionValue = Truth | Integer | Number | Word
+Options = Annotated[dict[Word, OptionValue], Field(max_length=32)]
 if TYPE_CHECKING:
     FrameName = Frame
     LimitName = Limit

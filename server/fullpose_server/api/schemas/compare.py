@@ -1,15 +1,15 @@
 """Comparisons on the wire."""
 
 from datetime import datetime
+from typing import Annotated
 
 from pydantic import Field
 
-from fullpose_server.api.schemas.base import Four, FrameName, LimitName, Name, Sha256, Wire
+from fullpose_server.api.schemas.base import Four, FrameName, LimitName, Name, Options, OptionValue, Sha256, Wire, Word
 from fullpose_server.api.schemas.plans import (
     BlockingOut,
     IterationsOut,
     JobErrorOut,
-    OptionValue,
     PeaksOut,
     ProgressOut,
     StepTimeOut,
@@ -21,8 +21,8 @@ from fullpose_server.store.jobs import JobStatus
 class MethodIn(Wire):
     """A method with options (GET /methods lists them), and what it is called in the table."""
 
-    method: str
-    options: dict[str, OptionValue] = Field(default={})
+    method: Word
+    options: Options = Field(default={})
     label: str | None = Field(
         default=None, min_length=1, max_length=64, description="Of its own; null: the name and the options given"
     )
@@ -35,7 +35,7 @@ class CompareIn(Wire):
 
     trajectory: Sha256
     rig: Name
-    methods: list[str | MethodIn] = Field(min_length=1, max_length=32)
+    methods: list[Annotated[str, Field(max_length=1000)] | MethodIn] = Field(min_length=1, max_length=32)
     start_deg: Four | None = None
 
 

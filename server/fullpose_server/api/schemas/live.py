@@ -8,11 +8,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fullpose_server.api.schemas.base import Four, Problem, Wire, check_one
+from fullpose_server.api.schemas.base import Four, Number, Problem, Three, Wire, check_one
 from fullpose_server.api.schemas.session import LeaseToken, LiveLoad
 from fullpose_server.session.states import State
 
-Three = tuple[float, float, float]
 SampleStatus = Literal["followed", "limited", "dropped", "idle"]
 
 
@@ -31,7 +30,7 @@ class LiveSampleIn(Wire):
     """One attitude: `q` (w, x, y, z) or `euler_deg`, as the convention says; body rates where the source has them."""
 
     type: Literal["sample"]
-    time_s: float = Field(description="The source's clock, rising")
+    time_s: Number = Field(description="The source's clock, rising")
     q: Four | None = None
     euler_deg: Three | None = None
     body_rate_deg_s: Three | None = None

@@ -13,13 +13,14 @@ from fullpose_server.api.schemas.base import (
     LimitName,
     Name,
     Notice,
+    Options,
+    OptionValue,
     RemedyName,
     Sha256,
     Wire,
+    Word,
 )
 from fullpose_server.store.jobs import JobStatus
-
-OptionValue = bool | int | float | str
 
 
 class PlanIn(Wire):
@@ -27,8 +28,8 @@ class PlanIn(Wire):
 
     trajectory: Sha256
     rig: Name
-    method: str = "plan"
-    options: dict[str, OptionValue] = Field(default={})
+    method: Word = "plan"
+    options: Options = Field(default={})
     start_deg: Four | None = None
 
 

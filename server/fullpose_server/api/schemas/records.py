@@ -30,6 +30,7 @@ class RunOut(Wire):
     samples: int | None = Field(description="Null, like all that follows from them, while the run is being written")
     lost_samples: int | None = Field(description="Sequence numbers that are missing, from its beginning to its end")
     bytes: int
+    pinned: bool = Field(description="It stays, whatever its age, and cannot be deleted")
     complete: bool = Field(description="False while it is being written, or where it was cut off or is damaged")
     max_solve_error_deg: float | None
     max_tracking_error_deg: float | None
@@ -58,8 +59,16 @@ class ServerLimits(Wire):
     max_solve_samples: int
 
 
+class DiskOut(Wire):
+    """The data folder's disk."""
+
+    free_bytes: int
+    alarm_bytes: int = Field(description="Less than that free: health is degraded")
+
+
 class HealthOut(Wire):
-    """`status` is degraded where a rig process, a recorder or the planner does not answer, or a rig file is none."""
+    """`status` is degraded where a rig process, a recorder or the planner does not answer, a rig file is none, the disk
+    is nearly full, or something stored was damaged."""
 
     status: Literal["ok", "degraded"]
     version: str
@@ -68,5 +77,6 @@ class HealthOut(Wire):
     authenticated: bool = Field(description="False: no users are configured, anyone who reaches the port may command")
     planner: RunnerStatus
     limits: ServerLimits
+    disk: DiskOut
     rigs: dict[str, RigHealth]
     warnings: list[str]

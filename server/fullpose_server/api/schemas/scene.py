@@ -2,14 +2,14 @@
 
 from pydantic import Field
 
-from fullpose_server.api.schemas.base import Four, Wire
+from fullpose_server.api.schemas.base import Four, Number, Wire, Word
 
 
 class ScenePoseIn(Wire):
     """An instant of a plan."""
 
-    plan_id: str
-    time_s: float = Field(description="Zero is the flight's first sample; negative in the lead-in")
+    plan_id: Word
+    time_s: Number = Field(description="Zero is the flight's first sample; negative in the lead-in")
 
 
 class ScenePoseOut(Wire):

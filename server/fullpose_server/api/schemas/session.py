@@ -7,15 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 
 from pydantic import Field, create_model, model_validator
 
-from fullpose_server.api.schemas.base import Four, FrameName, Wire, check_one
+from fullpose_server.api.schemas.base import Four, FrameName, Number, Options, Ordinal, Wire, Word, check_one
 from fullpose_server.session.alarms import Severity
 from fullpose_server.session.states import Command, State
-
-_INT64 = 2**63  # what database and rig process hold
-Ordinal = Annotated[int, Field(ge=0, lt=_INT64)]
-Word = Annotated[str, Field(max_length=64)]
-# Bounded, as all that a command brings is: the rig process reads it in the loop, in one packet.
-LiveOptionValue = bool | Annotated[int, Field(ge=-_INT64, lt=_INT64)] | float | Word
 
 
 class LeaseToken(Wire):
@@ -33,14 +27,14 @@ class LiveLoad(Wire):
     """How a live source is flown: a step method that keeps the limits, and its options."""
 
     method: Word = "exact"
-    options: dict[Word, LiveOptionValue] = Field(default={}, max_length=32)
-    first_sample_s: float = Field(default=5.0, gt=0.0, le=60.0, description="How long go_live waits for the source")
+    options: Options = Field(default={})
+    first_sample_s: Number = Field(default=5.0, gt=0.0, le=60.0, description="How long go_live waits for the source")
 
 
 class LoadArgs(Wire):
     """A plan, or a live source."""
 
-    plan: str | None = Field(default=None, description="Id of a flyable plan of this rig")
+    plan: Word | None = Field(default=None, description="Id of a flyable plan of this rig")
     live: LiveLoad | None = None
 
     @model_validator(mode="after")
@@ -64,7 +58,7 @@ class JogArgs(Wire):
     """One step of one frame, from where the rig is commanded to be."""
 
     frame: FrameName
-    step_deg: float
+    step_deg: Number
 
 
 class AcknowledgeArgs(Wire):

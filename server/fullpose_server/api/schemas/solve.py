@@ -4,16 +4,28 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fullpose_server.api.schemas.base import Four, FrameName, LimitName, Name, Problem, Wire, check_one
-from fullpose_server.api.schemas.plans import OptionValue, ReportOut
+from fullpose_server.api.schemas.base import (
+    Four,
+    FrameName,
+    LimitName,
+    Name,
+    Number,
+    Options,
+    Problem,
+    Three,
+    Wire,
+    Word,
+    check_one,
+)
+from fullpose_server.api.schemas.plans import ReportOut
 
 
 class Attitudes(Wire):
     """Attitudes at `time_s`: `q` (w, x, y, z), or `euler_deg` (yaw, pitch, roll)."""
 
-    time_s: Annotated[list[float], Field(min_length=1)]
-    q: list[Four] | None = None
-    euler_deg: list[tuple[float, float, float]] | None = None
+    time_s: Annotated[list[Number], Field(min_length=1, fail_fast=True)]
+    q: Annotated[list[Four], Field(fail_fast=True)] | None = None
+    euler_deg: Annotated[list[Three], Field(fail_fast=True)] | None = None
 
     @model_validator(mode="after")
     def _one_attitude(self) -> Self:
@@ -26,8 +38,8 @@ class Attitudes(Wire):
 
 class SolveIn(Attitudes):
     rig: Name
-    method: str = "exact"
-    options: dict[str, OptionValue] = Field(default={})
+    method: Word = "exact"
+    options: Options = Field(default={})
     start_deg: Four | None = None
 
 
@@ -52,8 +64,8 @@ class OpenSolve(Wire):
 
     type: Literal["open"]
     rig: Name
-    method: str = "exact"
-    options: dict[str, OptionValue] = Field(default={})
+    method: Word = "exact"
+    options: Options = Field(default={})
     start_deg: Four | None = None
 
 

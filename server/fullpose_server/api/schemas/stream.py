@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
-from fullpose_server.api.schemas.base import CLIENT_NAME, Problem, Wire
+from fullpose_server.api.schemas.base import CLIENT_NAME, Number, Ordinal, Problem, Truth, Wire
 from fullpose_server.api.schemas.session import CommandOut, SessionOut
 from fullpose_server.runtime.contract.telemetry import FIELDS
 
@@ -21,30 +21,30 @@ class Subscribe(Wire):
     """What the client wants; sent again, it replaces the earlier one."""
 
     type: Literal["subscribe"]
-    topics: list[Topic] = Field(default=["telemetry", "session"])
-    rate_hz: float = Field(default=30.0, gt=0.0, le=1000.0, description="Frames a second, not samples")
+    topics: list[Topic] = Field(max_length=8, default=["telemetry", "session"])
+    rate_hz: Number = Field(default=30.0, gt=0.0, le=1000.0, description="Frames a second, not samples")
     encoding: Encoding = "json"
-    every_sample: bool = Field(default=False, description="All samples since the last frame, else only the newest")
-    since_seq: int | None = Field(default=None, ge=0, description="Resume after this sample; null: from now on")
+    every_sample: Truth = Field(default=False, description="All samples since the last frame, else only the newest")
+    since_seq: Ordinal | None = Field(default=None, description="Resume after this sample; null: from now on")
 
 
 class Ping(Wire):
     type: Literal["ping"]
-    t: float
+    t: Number
 
 
 class Seek(Wire):
     """Replay only: to that time, playing or not. The newest sample there is sent at once."""
 
     type: Literal["seek"]
-    time_s: float = Field(ge=0.0, description="After the run's first sample")
+    time_s: Number = Field(ge=0.0, description="After the run's first sample")
 
 
 class Speed(Wire):
     """Replay only."""
 
     type: Literal["speed"]
-    factor: float = Field(gt=0.0, le=100.0, description="1: as fast as it was")
+    factor: Number = Field(gt=0.0, le=100.0, description="1: as fast as it was")
 
 
 class Pause(Wire):

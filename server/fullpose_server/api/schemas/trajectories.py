@@ -5,10 +5,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fullpose_server.api.schemas.base import Four, Notice, Sha256, Wire
+from fullpose_server.api.schemas.base import Four, Notice, Number, Sha256, Wire
 
 ConventionName = Literal["nue", "ned"]
-Samples = Annotated[list[float], Field(min_length=1)]
+Samples = Annotated[list[Number], Field(min_length=1, fail_fast=True)]
 
 _EULER = {"nue": ("yaw_deg", "pitch_deg", "roll_deg"), "ned": ("heading_deg", "pitch_deg", "bank_deg")}
 
@@ -24,7 +24,7 @@ class TrajectoryIn(Wire):
     pitch_deg: Samples | None = None
     roll_deg: Samples | None = None
     bank_deg: Samples | None = None
-    q: list[Four] | None = None
+    q: Annotated[list[Four], Field(fail_fast=True)] | None = None
 
     @model_validator(mode="after")
     def _one_attitude(self) -> Self:

@@ -26,7 +26,15 @@ from fullpose_server.api.schemas.stream import (
 )
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.api.streams.frames import FrameMaker
-from fullpose_server.api.streams.tasks import GoneError, Tasks, close_for, send_bytes, send_text
+from fullpose_server.api.streams.tasks import (
+    NOT_TEXT,
+    UNSUPPORTED,
+    GoneError,
+    Tasks,
+    close_for,
+    send_bytes,
+    send_text,
+)
 
 _INCOMING: TypeAdapter[StreamIn] = TypeAdapter(StreamIn)
 
@@ -65,7 +73,12 @@ class StreamClient:
         try:
             await self._say(self._source.hello(), by_alias=True)
             while (frame := await self._socket.receive())["type"] != "websocket.disconnect":
-                await self._take(frame.get("text"))
+                if frame.get("text") is None:
+                    await close_for(
+                        self._socket, StreamProblem(problem=NOT_TEXT.problem).model_dump_json(), UNSUPPORTED
+                    )
+                    break
+                await self._take(frame["text"])
         except GoneError:
             pass
         except Exception as error:  # noqa: BLE001 - logged by problem_of
@@ -74,10 +87,8 @@ class StreamClient:
             await self._sending.end()
             await self._answers.finished()  # done and audited, whoever listens
 
-    async def _take(self, text: str | None) -> None:
+    async def _take(self, text: str) -> None:
         try:
-            if text is None:
-                raise ApiError(422, "validation", "expected a JSON message in a text frame, this one is binary")
             message = _INCOMING.validate_json(text)
             if isinstance(message, Playback):
                 answer: Wire = self._source.control(message)

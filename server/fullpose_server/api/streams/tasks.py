@@ -7,8 +7,12 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
+from fullpose_server.api.problems import ApiError
+
 Work = Callable[[], Coroutine[Any, Any, None]]
 FAULT = 1011  # the WebSocket close code of an error of the server
+UNSUPPORTED = 1003  # of data that the socket does not take: a binary frame where messages are JSON
+NOT_TEXT = ApiError(422, "validation", "expected a JSON message in a text frame, this one is binary")
 
 
 class GoneError(Exception):

@@ -12,8 +12,9 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
+from fullpose._typing import Array
 from fullpose_server.errors import FileError
-from fullpose_server.formats.importers.columns import float_array
+from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds, Filling, check_columns, check_rows
 from fullpose_server.formats.trajectory import Convention, Trajectory, column_names, from_columns
 
 _HEADER_BYTES = 1_000_000
@@ -25,30 +26,40 @@ class _Header:
     lines: int  # up to and with the header line
 
 
-def read_csv(path: Path, convention: Convention, file: str) -> Trajectory:
-    """The flight; `file` is its name in messages. Raises `FileError`."""
+def read_csv(path: Path, convention: Convention, file: str, bounds: Bounds = UNBOUNDED) -> Trajectory:
+    """The flight; `file` is its name in messages. Raises `FileError`, `TooLargeError`."""
     header = _header(path, file)
+    check_columns(len(header.names), bounds, file)
     try:
         wanted = column_names(header.names, convention, file)
     except FileError as error:
         raise FileError(file, error.expected, line=header.lines, column=error.column, value=error.value) from None
     try:
-        table = pacsv.read_csv(
-            path,
-            read_options=pacsv.ReadOptions(column_names=header.names, skip_rows=header.lines),
-            convert_options=pacsv.ConvertOptions(
-                include_columns=list(wanted),
-                column_types=dict.fromkeys(wanted, pa.float64()),
-                null_values=[],
-                strings_can_be_null=False,
-            ),
-        )
+        columns = _columns(path, file, header, wanted, bounds)
     except pa.ArrowInvalid as error:
         if "Empty CSV" in str(error):
             raise FileError(file, "at least one row of samples after the header") from None
         raise _diagnose(path, file, header, wanted, str(error)) from None
-    columns = {name: float_array(table.column(name)) for name in wanted}
     return from_columns(columns, convention, file, lambda row: _line_of(path, file, header, row))
+
+
+def _columns(path: Path, file: str, header: _Header, wanted: tuple[str, ...], bounds: Bounds) -> dict[str, Array]:
+    """The wanted columns (n,), block by block, so that a file of too many rows is left at the first one too many."""
+    filling = Filling(wanted)
+    with pacsv.open_csv(
+        path,
+        read_options=pacsv.ReadOptions(column_names=header.names, skip_rows=header.lines),
+        convert_options=pacsv.ConvertOptions(
+            include_columns=list(wanted),
+            column_types=dict.fromkeys(wanted, pa.float64()),
+            null_values=[],
+            strings_can_be_null=False,
+        ),
+    ) as blocks:
+        for block in blocks:
+            check_rows(filling.rows + block.num_rows, bounds, file)
+            filling.add({name: block.column(name).to_numpy(zero_copy_only=False) for name in wanted})
+    return filling.columns()
 
 
 def _header(path: Path, file: str) -> _Header:

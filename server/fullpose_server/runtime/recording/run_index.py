@@ -2,16 +2,19 @@
 
 import contextlib
 import json
+import os
+import re
 import time
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 import numpy as np
 
-from fullpose_server.errors import FileError, NotFoundError
+from fullpose_server.errors import FileError, NotFoundError, ServerError
+from fullpose_server.formats import durable
+from fullpose_server.formats.output_file import write_text
 from fullpose_server.runtime.contract.telemetry import Flag, Samples
 from fullpose_server.runtime.recording.mcap_reader import (
     RecordError,
@@ -21,6 +24,8 @@ from fullpose_server.runtime.recording.mcap_reader import (
 )
 from fullpose_server.session.states import State
 
+_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,199}")  # of a run: a file's name, and no path
+PIN = ".pin"  # of the mark beside a record that is to stay
 _WRITTEN_S = 5.0  # a record that has not grown for so long is no longer written: its recorder was cut off
 
 
@@ -46,16 +51,33 @@ class RunSummary:
     max_lateness_us: float | None
 
 
+class RunInUseError(ServerError):
+    """A record that stays where it is."""
+
+    def __init__(self, run: str, why: str) -> None:
+        super().__init__(f"run {run} cannot be removed: {why}")
+
+
 class RunFiles:
     """The records in one folder."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    def all(self, rig: str | None = None) -> list[RunSummary]:
-        """Newest first; one that cannot be read says why. One that has only just begun may be left out."""
-        found = []
-        for path in sorted(self.folder.glob("*.mcap"), reverse=True):
+    def all(self, rig: str | None = None, before: str | None = None, limit: int | None = None) -> list[RunSummary]:
+        """Newest first, those after the run `before`, at most `limit`; one that cannot be read says why.
+
+        One that has only just begun may be left out.
+        """
+        found: list[RunSummary] = []
+        with os.scandir(self.folder) as entries:
+            names = sorted((e.name for e in entries if e.name.endswith(".mcap")), reverse=True)
+        for name in names:
+            path = self.folder / name
+            if (before is not None and path.stem >= before) or (rig is not None and _rig_of(path.stem) != rig):
+                continue
+            if limit is not None and len(found) >= limit:
+                break
             # One that is gone since we looked for it is no run any more.
             with contextlib.suppress(FileNotFoundError):
                 try:
@@ -63,7 +85,7 @@ class RunFiles:
                 except (RecordError, OSError) as error:
                     if not _is_fresh(path):
                         found.append(_unreadable(path, error))
-        return [run for run in found if rig is None or run.rig == rig]
+        return found
 
     def get(self, run: str) -> RunSummary:
         """One run. Raises `NotFoundError`, or `FileError` for a file that is no record."""
@@ -75,9 +97,64 @@ class RunFiles:
     def path(self, run: str) -> Path:
         """The record's file. Raises `NotFoundError`."""
         path = self.folder / f"{run}.mcap"
-        if Path(run).name != run or not path.is_file():
+        if not _ID.fullmatch(run) or not path.is_file():
             raise NotFoundError("run", run)
         return path
+
+    def remove(self, run: str) -> None:
+        """Remove a record, and what is kept beside it. Raises `NotFoundError`, `RunInUseError`."""
+        path = self.path(run)
+        if path.with_suffix(PIN).exists():
+            raise RunInUseError(run, "it is pinned")
+        if _is_fresh(path) and not is_complete(path):
+            raise RunInUseError(run, "it is being written")
+        path.with_suffix(".json").unlink(missing_ok=True)
+        path.unlink(missing_ok=True)
+
+    def pin(self, run: str, *, pinned: bool) -> None:
+        """Keep a record whatever its age, or no longer. Raises `NotFoundError`."""
+        mark = self.path(run).with_suffix(PIN)
+        if pinned:
+            mark.touch()
+            durable.sync(self.folder)
+        else:
+            mark.unlink(missing_ok=True)
+
+    def pinned(self, run: str) -> bool:
+        """Whether it is."""
+        return (self.folder / f"{run}{PIN}").exists()
+
+    def sizes(self) -> list[tuple[str, int, float, bool]]:
+        """(id, bytes, when it was last written [s since 1970], pinned) of every record."""
+        found = []
+        with os.scandir(self.folder) as entries:
+            names = {entry.name: entry for entry in entries}
+        for name, entry in names.items():
+            if name.endswith(".mcap"):
+                with contextlib.suppress(FileNotFoundError):
+                    about, run = entry.stat(), name.removesuffix(".mcap")
+                    found.append((run, about.st_size, about.st_mtime, f"{run}{PIN}" in names))
+        return found
+
+    def damaged(self) -> list[tuple[str, str]]:
+        """(id, why) of every file that is no record at all and that nobody writes."""
+        found = []
+        for run, _, written, _ in self.sizes():
+            path = self.folder / f"{run}.mcap"
+            if abs(time.time() - written) < _WRITTEN_S:
+                continue
+            try:
+                run_of(path)
+            except RecordError as error:
+                found.append((run, error.why))
+            except OSError:
+                continue
+        return found
+
+    def files(self, run: str) -> list[Path]:
+        """The record and what is kept beside it."""
+        path = self.folder / f"{run}.mcap"
+        return [path, path.with_suffix(".json"), path.with_suffix(PIN)]
 
     def _summary(self, path: Path) -> RunSummary:
         """Of the file: read whole once, when nobody writes to it any more, and kept beside it."""
@@ -103,20 +180,19 @@ def _is_fresh(path: Path) -> bool:
 
 
 def _keep(summary: RunSummary, kept: Path) -> None:
-    draft = kept.with_suffix(f".{uuid4().hex}.tmp")
-    try:
-        draft.write_text(json.dumps(asdict(summary)), encoding="utf-8")
-        draft.replace(kept)
-    except OSError:  # a full disk, say: the summary is as true, and made again next time
-        with contextlib.suppress(OSError):
-            draft.unlink(missing_ok=True)
+    with contextlib.suppress(OSError):  # a full disk, say: the summary is as true, and made again next time
+        write_text(kept, json.dumps(asdict(summary)))
+
+
+def _rig_of(run: str) -> str:
+    return run.split("-", 1)[-1].rsplit("-", 1)[0].removesuffix("-incident")
 
 
 def _named(path: Path) -> RunSummary:
     """What the file's name says."""
     return RunSummary(
         id=path.stem,
-        rig=path.stem.split("-", 1)[-1].rsplit("-", 1)[0].removesuffix("-incident"),
+        rig=_rig_of(path.stem),
         incident=None,
         error=None,
         plan_id=None,

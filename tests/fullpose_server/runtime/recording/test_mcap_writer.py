@@ -12,7 +12,7 @@ from fullpose_server.runtime.contract.telemetry import SAMPLE, Samples
 from fullpose_server.runtime.recording.export import repair
 from fullpose_server.runtime.recording.mcap_reader import (
     RecordError,
-    is_whole,
+    is_complete,
     read_events,
     read_samples,
     run_of,
@@ -191,16 +191,16 @@ def test_what_a_power_cut_leaves_is_read_to_the_last_chunk(record: Path, tmp_pat
         np.testing.assert_array_equal(read_samples(path)["seq"], np.arange(1, 601))
         assert [event["kind"] for event in read_events(path)] == ["command"]
         assert run_of(path)["run_id"] == "run"
-        assert not is_whole(path)
+        assert not is_complete(path)
         repair(path, whole)
-        assert is_whole(whole)
+        assert is_complete(whole)
         np.testing.assert_array_equal(read_samples(whole)["seq"], np.arange(1, 601))
 
 
 def test_a_flipped_byte_costs_its_chunk_and_no_wrong_sample_is_read(record: Path, tmp_path: Path) -> None:
     data = record.read_bytes()
     starts = chunk_starts(data)
-    assert is_whole(record)
+    assert is_complete(record)
     path = tmp_path / "flipped.mcap"
     sound = rows()
     end = starts[4] + int.from_bytes(data[starts[4] - 8 : starts[4]], "little")
@@ -210,13 +210,13 @@ def test_a_flipped_byte_costs_its_chunk_and_no_wrong_sample_is_read(record: Path
         damaged = bytearray(data)
         damaged[place] ^= 0x55
         path.write_bytes(damaged)
-        assert not is_whole(path), place
+        assert not is_complete(path), place
         read = read_samples(path)
         kept = np.r_[0:400, 500:1000]
         for name in SAMPLE.names or ():
             np.testing.assert_array_equal(read[name], sound[name][kept], err_msg=f"{name}, byte {place}")
     repair(path, tmp_path / "whole.mcap")
-    assert is_whole(tmp_path / "whole.mcap")
+    assert is_complete(tmp_path / "whole.mcap")
 
 
 def test_a_length_that_is_damaged_ends_the_file_there(record: Path, tmp_path: Path) -> None:
@@ -227,7 +227,7 @@ def test_a_length_that_is_damaged_ends_the_file_there(record: Path, tmp_path: Pa
         damaged = bytearray(data)
         damaged[at + byte] ^= 0xA5
         path.write_bytes(damaged)
-        assert not is_whole(path)
+        assert not is_complete(path)
         read = read_samples(path)["seq"].tolist()
         assert read[:400] == list(range(1, 401))
         assert read == sorted(set(read) & set(range(1, 1001)))
@@ -238,7 +238,7 @@ def test_what_is_no_record_says_why(record: Path, tmp_path: Path) -> None:
     data = record.read_bytes()
     for content in (b"", b"not a record", bytes(100_000), data[:8]):
         path.write_bytes(content)
-        assert not is_whole(path)
+        assert not is_complete(path)
         with pytest.raises(RecordError, match=r"file\.mcap: no"):
             run_of(path)
         with pytest.raises(RecordError, match=r"file\.mcap: not a record"):

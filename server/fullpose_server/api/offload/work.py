@@ -1,0 +1,160 @@
+"""What the offload process does: one upload made into a flight's arrays, one batch solved. Files in, files out.
+
+Nothing of what a client sends is parsed in the server's own process: neither its memory nor its event loop is at stake.
+"""
+
+import errno
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from fullpose.errors import SolverError
+from fullpose.rig import Rig
+from fullpose_server.api.attitudes import attitudes, limited_list
+from fullpose_server.api.errors import problem_of
+from fullpose_server.api.problems import ApiError, validation_problem
+from fullpose_server.api.schemas.plans import ReportOut
+from fullpose_server.api.schemas.solve import SolveIn, SolveOut
+from fullpose_server.api.schemas.trajectories import TrajectoryIn
+from fullpose_server.errors import FileError, ServerError
+from fullpose_server.formats.flight_folder import write_flight
+from fullpose_server.formats.importers.columns import Bounds, check_rows
+from fullpose_server.formats.rig_file import RigStore
+from fullpose_server.formats.trajectory import Convention, Trajectory, from_columns
+from fullpose_server.formats.trajectory_file import read_trajectory, source_format
+from fullpose_server.planning.worker import Maker, Progress
+
+
+class Work(StrEnum):
+    """What can be asked for."""
+
+    READ_FILE = "read_file"
+    READ_JSON = "read_json"
+    SOLVE = "solve"
+
+
+@dataclass(frozen=True)
+class ReadRequest:
+    """An upload: where it is, what it is called, where its arrays go, and how many of them it may have."""
+
+    source: str
+    folder: str
+    rows: int
+    columns: int
+    file: str = ""
+    convention: str = Convention.NUE
+
+    def to_json(self) -> dict[str, Any]:
+        """Values for `json`."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class SolveRequest:
+    """A batch: where its body is, where the answer goes, where the rigs are, and how many samples it may have."""
+
+    body: str
+    answer: str
+    rigs: str
+    samples: int
+
+    def to_json(self) -> dict[str, Any]:
+        """Values for `json`."""
+        return asdict(self)
+
+
+def _read_file(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    asked = ReadRequest(**values)
+    source = Path(asked.source)
+    bounds = Bounds(asked.rows, asked.columns)
+    flight = read_trajectory(source, Convention(asked.convention), asked.file, bounds)
+    return _written(asked, flight, source_format(source), "")
+
+
+def _read_json(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    asked = ReadRequest(**values)
+    try:
+        model = TrajectoryIn.model_validate_json(Path(asked.source).read_bytes())
+    except ValidationError as error:
+        found = validation_problem(error.errors(include_url=False))
+        raise ApiError(422, "validation", found.detail, errors=found.errors) from None
+    check_rows(len(model.time_s), Bounds(asked.rows, asked.columns), model.name)
+    columns = {name: np.array(column, dtype=np.float64) for name, column in model.columns().items()}
+    flight = from_columns(columns, Convention(model.convention), model.name, lambda row: row, unit="sample")
+    return _written(asked, flight, "json", model.name)
+
+
+def _written(asked: ReadRequest, flight: Trajectory, kind: str, name: str) -> dict[str, Any]:
+    return {"facts": write_flight(Path(asked.folder), flight).to_json(), "format": kind, "name": name}
+
+
+def _solve(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    asked = SolveRequest(**values)
+    try:
+        body = SolveIn.model_validate_json(Path(asked.body).read_bytes())
+    except ValidationError as error:
+        located = [{**one, "loc": ("body", *one["loc"])} for one in error.errors(include_url=False)]
+        found = validation_problem(located)
+        raise ApiError(422, "validation", found.detail, errors=found.errors) from None
+    if len(body.time_s) > asked.samples:
+        told = f"{len(body.time_s)} samples: this server solves up to {asked.samples} at once"
+        raise ApiError(413, "too-large", told)
+    rig = RigStore(Path(asked.rigs)).get(body.rig).rig
+    Path(asked.answer).write_text(_solved(body, rig).model_dump_json(), encoding="utf-8")
+    return {}
+
+
+def _solved(body: SolveIn, rig: Rig) -> SolveOut:
+    # Numba and SciPy: a second that an upload need not wait for.
+    from fullpose.registry import method_options
+    from fullpose.solve import solve
+    from fullpose.verify import verify
+    from fullpose_server.formats.report import make_report
+    from fullpose_server.formats.start_pose import start_pose
+
+    at, C = attitudes(body)
+    solution = solve(
+        at,
+        C,
+        rig,
+        method=body.method,
+        options=method_options(body.method, dict(body.options)),
+        start=None if body.start_deg is None else np.array(start_pose(body.start_deg, rig, "start_deg")),
+        clock=time.perf_counter,
+    )
+    report = make_report(solution, verify(at, solution.angles, rig, C))
+    return SolveOut.model_construct(
+        time_s=body.time_s,
+        angles_deg=[tuple(row) for row in np.rad2deg(solution.angles).tolist()],
+        error_deg=np.rad2deg(solution.error).tolist(),
+        limited=limited_list(solution.limited),
+        report=ReportOut(**report),
+    )
+
+
+MAKERS: dict[str, Maker] = {Work.READ_FILE: _read_file, Work.READ_JSON: _read_json, Work.SOLVE: _solve}
+
+
+def failure(error: Exception, bound: int) -> dict[str, Any]:
+    """The problem document of what went wrong, for `json`; `bound`: the memory there was [bytes]."""
+    match error:
+        case MemoryError() | SystemError():  # an error that there was no memory to tell
+            error = memory_needed(bound)
+        case ApiError() | SolverError() | ServerError() | FileError() | OSError(errno=errno.ENOSPC | errno.EDQUOT):
+            pass
+        case _:  # for the server to log
+            return {"unexpected": f"{type(error).__name__}: {error}"}
+    document: dict[str, Any] = json.loads(problem_of(error).model_dump_json())
+    return document
+
+
+def memory_needed(bound: int) -> ApiError:
+    """413 for what takes more memory than there is for one request."""
+    return ApiError(413, "memory", f"it unpacks to more than this server gives one request, {bound / 1e6:.0f} MB")

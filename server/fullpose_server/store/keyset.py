@@ -1,0 +1,22 @@
+"""Where in a list a row stands: newest first, and by its id where two are of the same moment."""
+
+from typing import Any, NamedTuple, TypeVar
+
+from sqlalchemy import Select, literal, tuple_
+
+_Query = TypeVar("_Query", bound=Select[Any])
+
+
+class Key(NamedTuple):
+    """Of a row."""
+
+    created: float  # [s] since 1970
+    id: str
+
+
+def newest_first(query: _Query, row: Any, key: Any, before: Key | None, limit: int | None) -> _Query:
+    """The query's rows in order of `row.created` and `key`, those after the one at `before`, at most `limit`."""
+    if before is not None:
+        query = query.where(tuple_(row.created, key) < tuple_(literal(before.created), literal(before.id)))
+    query = query.order_by(row.created.desc(), key.desc())
+    return query if limit is None else query.limit(limit)
