@@ -150,8 +150,7 @@ def main() -> None:
     print(machine())
     found = {}
     sent = requests()
-    with tempfile.TemporaryDirectory() as folder, served(Path(folder)) as port:
-        pid = _listening(port)
+    with tempfile.TemporaryDirectory() as folder, served(Path(folder)) as (port, pid):
         print(f"{'request':36} {'answer':>12} {'longest s':>10} {'server MB':>10} {'all MB':>8}")
         for name, send in sent.items():
             one = found[name] = measure(port, pid, send, given.at_once)
@@ -159,18 +158,6 @@ def main() -> None:
             print(f"{name:36} {answer:>12} {one['longest_s']:10.2f} {one['server_mb']:10.0f} {one['all_mb']:8.0f}")
     if given.json is not None:
         given.json.write_text(json.dumps({"machine": machine(), "requests": found}, indent=1), encoding="utf-8")
-
-
-def _listening(port: int) -> int:
-    """The pid of the child of ours that serves at `port`: it was started last."""
-    children = [pid for pid in _sizes(os.getpid()) if pid != os.getpid()]
-    direct = [pid for pid in children if _parent(pid) == os.getpid()]
-    assert direct, f"nobody serves at {port}"
-    return max(direct)
-
-
-def _parent(pid: int) -> int:
-    return int(Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[1])
 
 
 if __name__ == "__main__":
