@@ -10,6 +10,7 @@ import pytest
 
 from fullpose_server.api.schemas.compare import ComparisonReportOut
 from fullpose_server.planning.comparisons import Comparisons
+from fullpose_server.store.quarantine import Quarantine
 from tests.fullpose_server.api.live_server import LiveServer
 from tests.support.waiting import until
 
@@ -125,7 +126,7 @@ def test_a_report_of_an_earlier_server_is_read(server: LiveServer) -> None:
                 for key in ("label", "options", "exact_samples", "exact_percent"):
                     del row[key]
         (old / name).write_text(json.dumps(table), encoding="utf-8")
-    again = Comparisons(root)
+    again = Comparisons(root, Quarantine(root.parent / "quarantine"))
     assert [variant.label for variant in again.get("00000000feedbeef").request.methods] == ["exact"]
     report = again.report("00000000feedbeef")
     assert ComparisonReportOut.model_validate(report).methods[0].label == "exact"
@@ -167,7 +168,7 @@ def test_found_again_by_the_next_server(server: LiveServer) -> None:
     half = root / "00000000deadbeef"
     half.mkdir()
     (half / "request.json").write_text((root / done["id"] / "request.json").read_text(), encoding="utf-8")
-    again = Comparisons(root)
+    again = Comparisons(root, Quarantine(root.parent / "quarantine"))
     assert again.get(done["id"]).status == "done"
     report = again.report(done["id"])
     assert report is not None
