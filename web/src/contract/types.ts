@@ -8,6 +8,7 @@ export type Alarm = Schemas["AlarmOut"];
 export type CommandBody = paths["/api/v1/rigs/{rig}/commands"]["post"]["requestBody"]["content"]["application/json"];
 export type CommandName = CommandBody["command"];
 export type ArgsOf<Name extends CommandName> = Given<Extract<CommandBody, { command: Name }>["args"]>;
+export type CommandDone = Schemas["CommandOut"];
 export type Comparison = Schemas["ComparisonOut"];
 export type Convention = NonNullable<FlightForm["convention"]>;
 export type ExportFormat = NonNullable<
@@ -58,3 +59,5 @@ export const FLAG: Pick<flags, "stale"> = { stale: 32 };
 
 /** What a client may leave out of `T`: the generated types say of a default that it is there, as it is in an answer. */
 type Given<T> = T extends readonly unknown[] ? T : T extends object ? { [Key in keyof T]?: Given<T[Key]> } : T;
+/** A command that needs no lease and waits for nothing. */
+export type Urgent = Schemas["StopRig"]["type"];

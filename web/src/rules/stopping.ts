@@ -1,8 +1,6 @@
 /** A Stop or an E-stop that was not answered, and what tells that it came through all the same. */
 
-import type { StateName } from "../contract/types";
-
-export type Urgent = "stop" | "estop";
+import type { StateName, Urgent } from "../contract/types";
 
 export const NAMES: Record<Urgent, string> = { stop: "Stop", estop: "E-stop" };
 

@@ -4,6 +4,7 @@ import type { Api } from "../net/api";
 import { messageOf } from "../net/errors";
 import { History } from "../net/history";
 import { NO_LINK, reduce, type Link, type LinkEvent } from "../net/link";
+import type { OpenStopLine } from "../net/stopChannel";
 import type { Connect, Connection } from "../net/stream";
 import { sampleAt, type Batch, type Sample } from "../net/telemetry";
 import type { TimeAxis } from "../rules/axis";
@@ -50,9 +51,10 @@ export class Operated implements Feed {
     private readonly api: Api,
     private readonly notices: Notices,
     private readonly connect: Connect,
+    openStopLine: OpenStopLine,
   ) {
     this.lease = new RigLease(api, notices, () => this.session);
-    this.stops = new Stops(api, notices, () => this.name);
+    this.stops = new Stops(api, notices, () => this.name, openStopLine);
   }
 
   open(name: string): void {

@@ -1,7 +1,9 @@
 /** Stop and E-stop: they need no lease, wait for no other command, and what was not confirmed stays in sight. */
+import type { Urgent } from "../contract/types";
 import type { Api } from "../net/api";
 import { ApiError, messageOf } from "../net/errors";
-import { settled, type Urgent } from "../rules/stopping";
+import { settled } from "../rules/stopping";
+import type { OpenStopLine, StopLine } from "../net/stopChannel";
 import type { Notices } from "./notices.svelte";
 
 /** A Stop or E-stop that was not answered; `rig` is null where none was known to send it to. */
@@ -14,7 +16,10 @@ export interface Unconfirmed {
 export class Stops {
   /** Kept until one is confirmed, the rig is seen to have stopped, or a person puts it away. */
   unconfirmed: Unconfirmed | null = $state.raw(null);
+  /** Of the stop channel [ms]; null while it is down, and stops go over HTTP. */
+  roundTripMs: number | null = $state(null);
 
+  readonly #line: StopLine;
   #presses = 0;
   /** The newest press of each kind that was answered. */
   readonly #confirmed: Record<Urgent, number> = { stop: 0, estop: 0 };
@@ -24,7 +29,10 @@ export class Stops {
     private readonly notices: Notices,
     /** The rig that is operated. */
     private readonly operated: () => string | null,
-  ) {}
+    open: OpenStopLine,
+  ) {
+    this.#line = open((ms) => (this.roundTripMs = ms));
+  }
 
   stop = (): Promise<void> => this.#press("stop", this.operated());
   estop = (): Promise<void> => this.#press("estop", this.operated());
@@ -52,8 +60,9 @@ export class Stops {
       return;
     }
     try {
-      await (what === "stop" ? this.api.stop(rig) : this.api.estop(rig));
+      const done = (await this.#line.press(what, rig)) ?? (await this.api[what](rig));
       this.#answered(what, rig, press);
+      if (done.unknown) this.unconfirmed = { what, rig, why: done.unknown };
     } catch (error) {
       if (error instanceof ApiError && error.status === 409) {
         // Asked of a rig that does not move: said, but no alarm.

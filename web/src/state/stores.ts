@@ -1,6 +1,7 @@
 /** The console's stores: made once, at the root, and given to every component by context. */
 import { createContext } from "svelte";
 import { api, type Api } from "../net/api";
+import { openStopLine, type OpenStopLine } from "../net/stopChannel";
 import { connect, type Connect } from "../net/stream";
 import { Gathered } from "./circumstances.svelte";
 import { Library } from "./library.svelte";
@@ -20,11 +21,11 @@ export interface Stores {
   readonly theme: ThemeChoice;
 }
 
-/** New stores, that ask the server through `asked`, and listen to the streams that `connect` opens. */
-export function makeStores(asked: Api = api, open: Connect = connect): Stores {
+/** New stores, that ask the server through `asked`, listen to the streams of `open` and stop rigs by `line`. */
+export function makeStores(asked: Api = api, open: Connect = connect, line: OpenStopLine = openStopLine): Stores {
   const library = new Library(asked);
   const notices = new Notices();
-  const operated = new Operated(asked, notices, open);
+  const operated = new Operated(asked, notices, open, line);
   const circumstances = new Gathered(operated, library);
   return {
     api: asked,

@@ -1,8 +1,9 @@
 /** A console for tests: real stores, on a server and a stream that the test answers for. */
 import { render, type RenderResult } from "@testing-library/svelte";
 import type { Component } from "svelte";
-import type { Snapshot } from "../contract/types";
+import type { CommandDone, Snapshot } from "../contract/types";
 import { api, type Api } from "../net/api";
+import type { OpenStopLine } from "../net/stopChannel";
 import type { Connect, Listener } from "../net/stream";
 import { makeStores, type Stores } from "../state/stores";
 import Within from "./Within.svelte";
@@ -11,7 +12,10 @@ export class TestConsole {
   readonly stores: Stores;
   /** What was asked of the server, and with what. */
   readonly asked: [request: string, ...with_: unknown[]][] = [];
+  /** What the stop channel answers; null: it is down. */
+  channel: CommandDone | null = null;
   #listener: Listener | null = null;
+  #roundTrip: (ms: number | null) => void = () => undefined;
 
   /** `answers`: what the server says to a request, a value or an error; to the others it never answers. */
   constructor(answers: { [Request in keyof Api]?: unknown } = {}) {
@@ -30,7 +34,17 @@ export class TestConsole {
       this.#listener = listener;
       return { close: () => undefined, control: () => undefined };
     };
-    this.stores = makeStores(server, connect);
+    const line: OpenStopLine = (roundTrip) => {
+      this.#roundTrip = roundTrip;
+      return {
+        press: (what, rig) => {
+          if (!this.channel) return Promise.resolve(null);
+          this.asked.push([`channel ${what}`, rig]);
+          return Promise.resolve(this.channel);
+        },
+      };
+    };
+    this.stores = makeStores(server, connect, line);
   }
 
   /** Operates a rig whose session is this; fresh data is there. */
@@ -51,6 +65,13 @@ export class TestConsole {
   grow(ageAtSendMs: number): void {
     this.#listener?.link({ type: "frame", seq: 2, dropped: 0, ageAtSendMs, nowMs: performance.now() });
     this.#listener?.link({ type: "pong", roundTripMs: 1 });
+  }
+
+  /** Opens the stop channel, that answers `done`. */
+  openChannel(done: CommandDone, roundTripMs: number): this {
+    this.channel = done;
+    this.#roundTrip(roundTripMs);
+    return this;
   }
 
   /** Loses the connection of the stream. */

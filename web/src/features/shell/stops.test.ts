@@ -48,6 +48,30 @@ describe("Stop and E-stop", () => {
     await expect.poll(() => screen.queryByTestId("unconfirmed")).toBeNull();
   });
 
+  it("take the stop channel where it is open, and HTTP where it is not", async () => {
+    const done = { command: "stop", state_before: "running", state_after: "stopping", revision: 2 } as const;
+    const console = new TestConsole({ stop: done }).operate(running).openChannel(done, 1.5);
+    console.show(Header, { choose: () => undefined });
+    expect(screen.getByTestId("stop-round-trip").textContent).toContain("ms");
+    await press(/^Stop/);
+    console.channel = null;
+    await press(/^Stop/);
+    await expect.poll(() => console.asked).toEqual([
+      ["channel stop", "bench"],
+      ["stop", "bench"],
+    ]);
+  });
+
+  it("of which something is not known say what", async () => {
+    const done = { command: "estop", state_before: "running", state_after: "running", revision: 2 } as const;
+    const console = new TestConsole().operate(running);
+    console.openChannel({ ...done, unknown: "the rig process has not answered" }, 1);
+    console.show(Header, { choose: () => undefined });
+    console.show(Warnings, {});
+    await press(/^E-stop/);
+    expect((await warning()).textContent).toContain("the rig process has not answered");
+  });
+
   it("of a rig that does not move are no alarm", async () => {
     const console = new TestConsole({ stop: new ApiError(409, "stop is not allowed while idle") }).operate(running);
     console.show(Header, { choose: () => undefined });

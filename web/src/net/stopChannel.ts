@@ -1,0 +1,136 @@
+/** The stop channel: one WebSocket for the stops of every rig, open from the page's first moment, its round trip known. */
+import type { sockets } from "../contract/schema";
+import type { CommandDone, Urgent } from "../contract/types";
+import { ApiError } from "./errors";
+import { me } from "./identity";
+import { socketTo } from "./request";
+import { backoffMs, BROWSER, PING_PERIOD_MS, SILENCE_MS, type Socket, type Surroundings } from "./stream";
+
+type Answer = sockets["/api/v1/stop"]["answered"];
+type Ask = sockets["/api/v1/stop"]["sent"];
+
+/** How long an answer may take [ms]: the server gives one within 250. */
+export const ANSWER_MS = 1000;
+
+/** What a press of Stop needs; null where the channel is not open, or did not answer: then it goes over HTTP. */
+export interface StopLine {
+  press: (what: Urgent, rig: string) => Promise<CommandDone | null>;
+}
+
+/** Opens a channel; it tells its round trip [ms], null while it is down. */
+export type OpenStopLine = (roundTrip: (ms: number | null) => void) => StopLine;
+
+export const openStopLine: OpenStopLine = (roundTrip) => new StopChannel(roundTrip);
+
+interface Waiting {
+  answer: (done: CommandDone | null) => void;
+  refuse: (error: ApiError) => void;
+}
+
+export class StopChannel implements StopLine {
+  #socket: Socket | null = null;
+  #open = false;
+  #attempt = 0;
+  #heardAt = 0;
+  #number = 0;
+  readonly #waiting = new Map<number, Waiting>();
+
+  constructor(
+    private readonly roundTrip: (ms: number | null) => void,
+    private readonly around: Surroundings = BROWSER,
+    private readonly url: string = socketTo("/api/v1/stop", {}),
+  ) {
+    this.#connect();
+    this.#tick();
+  }
+
+  press = (what: Urgent, rig: string): Promise<CommandDone | null> => {
+    if (!this.#open) return Promise.resolve(null);
+    const id = ++this.#number;
+    return new Promise((resolve, reject) => {
+      const timer = this.around.setTimeout(() => this.#settle(id, null), ANSWER_MS);
+      const ended = () => this.around.clearTimeout(timer);
+      this.#waiting.set(id, {
+        answer: (done) => {
+          ended();
+          resolve(done);
+        },
+        refuse: (error) => {
+          ended();
+          reject(error);
+        },
+      });
+      this.#say({ type: what, rig, client: me(), id });
+    });
+  };
+
+  #say(message: Ask): void {
+    this.#socket?.send(JSON.stringify(message));
+  }
+
+  #connect(): void {
+    const socket = this.around.open(this.url);
+    this.#socket = socket;
+    this.#heardAt = this.around.now();
+    socket.onopen = () => {
+      this.#open = true;
+      this.#attempt = 0;
+      this.#say({ type: "ping", t: this.around.now() });
+    };
+    socket.onmessage = ({ data }) => this.#receive(data);
+    socket.onclose = () => this.#lost();
+  }
+
+  #receive(data: unknown): void {
+    this.#heardAt = this.around.now();
+    const message = JSON.parse(String(data)) as Answer;
+    switch (message.type) {
+      case "pong":
+        this.roundTrip(this.around.now() - message.t);
+        break;
+      case "stopped":
+        this.#settle(message.id, message.done);
+        break;
+      case "problem":
+        this.#refuse(message.id, new ApiError(message.problem.status, message.problem.detail));
+        break;
+      default:
+        message satisfies never;
+    }
+  }
+
+  #settle(id: number, done: CommandDone | null): void {
+    this.#waiting.get(id)?.answer(done);
+    this.#waiting.delete(id);
+  }
+
+  /** Refuses the press of that number; a message that was none has no number. */
+  #refuse(id: number | null | undefined, error: ApiError): void {
+    const waiting = this.#waiting.get(id ?? 0);
+    this.#waiting.delete(id ?? 0);
+    waiting?.refuse(error);
+  }
+
+  /** Asks for the round trip once a second, and gives up a channel from which nothing comes. */
+  #tick(): void {
+    this.around.setTimeout(() => {
+      if (this.#socket && this.around.now() - this.#heardAt > SILENCE_MS) this.#lost();
+      else if (this.#open) this.#say({ type: "ping", t: this.around.now() });
+      this.#tick();
+    }, PING_PERIOD_MS);
+  }
+
+  #lost(): void {
+    const socket = this.#socket;
+    this.#socket = null;
+    this.#open = false;
+    if (socket) {
+      socket.onopen = socket.onmessage = socket.onclose = null;
+      socket.close();
+    }
+    this.roundTrip(null);
+    for (const id of [...this.#waiting.keys()]) this.#settle(id, null);
+    this.#attempt++;
+    this.around.setTimeout(() => this.#connect(), backoffMs(this.#attempt, this.around.random()));
+  }
+}
