@@ -2,7 +2,7 @@
 
 A method proposes a pose from the linearised programme; `settle` puts it on the self-motion curve of the target and
 slides it along the curve until it lies inside the box, so that the sample is exact and inside every limit, or says
-that it cannot; `give_way` then makes the attitude error as small as the limits allow.
+that it cannot; `yield_attitude` then makes the attitude error as small as the limits allow.
 
 Recovery. A sample that was limited leaves an error behind. Closing it at once would arrive with a closing rate that no
 frame can brake, overshoot and swing on its acceleration limits. So the error is closed like a frame approaches its

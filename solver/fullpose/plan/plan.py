@@ -30,7 +30,7 @@ class Plan:
     """A flight's plan: the solution, the verdict on it, its margins, and the way from rest to it and back.
 
     `lead_in`, `lead_out` (m, 4) [rad] at the flight's sample interval, without the flight's own first and last
-    sample; empty where the flight begins or ends at rest, or where `lead_note` says why there is none.
+    sample; empty where the flight begins or ends at rest, or where `lead_refusal` says why there is none.
     """
 
     solution: Solution

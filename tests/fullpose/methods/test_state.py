@@ -10,7 +10,7 @@ from fullpose._typing import Array
 from fullpose.bounds import EXACT, limited_code
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
 from fullpose.limits import tolerances
-from fullpose.methods.limited import give_way, goal, null_space_increment, outermost_code, settle
+from fullpose.methods.limited import goal, null_space_increment, outermost_code, settle, yield_attitude
 from fullpose.methods.state import Flight, advance, new_flight
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.verify import payload_attitudes
@@ -102,7 +102,7 @@ def test_settle_says_when_the_box_holds_none() -> None:
     assert settle(flight_for(d, 1e-6, np.array([1e-3, 1e-3, 1e-3, 1e-3]), C)) == 0
 
 
-def test_give_way_goes_as_far_as_it_may_and_names_what_binds() -> None:
+def test_yield_attitude_goes_as_far_as_it_may_and_names_what_binds() -> None:
     d = np.array([0.0, 0.4, 0.2, 0.0])
     C = payload_attitudes(RIG, np.array([[0.0, 0.4, 0.2, 0.1]]))[0]
     flight = flight_for(d, 1e-3, np.zeros(4), C)
@@ -110,7 +110,7 @@ def test_give_way_goes_as_far_as_it_may_and_names_what_binds() -> None:
         [limited_code(i, 1) for i in range(4)],
         [limited_code(i, 2) for i in range(4)],
     )
-    assert give_way(flight) == limited_code(3, 2)
+    assert yield_attitude(flight) == limited_code(3, 2)
     guess = flight.guess.copy()
     assert guess[3] == d[3] + 1e-3
     assert np.all((guess >= flight.lo) & (guess <= flight.hi))

@@ -26,17 +26,18 @@ def live_step(rig: Rig, settings: LiveSettings, dt: float) -> LiveStep:
 
 def compile_steps(rig: Rig, dt: float) -> None:
     """Compile (or load from the cache) the kernels of every method that can fly `rig` live."""
+    from fullpose.errors import MethodError
     from fullpose.registry import REGISTRY, Sees
     from fullpose_server.runtime.live.method_stepper import MethodStep
     from fullpose_server.runtime.live.preview_stepper import compile_preview
 
     for row in REGISTRY.values():
-        if row.sees is Sees.AHEAD:
-            compile_preview(rig, dt)
-        elif row.sees is Sees.SAMPLE and row.claims_limits:
-            try:
+        try:
+            if row.sees is Sees.AHEAD:
+                compile_preview(rig, dt)
+            elif row.sees is Sees.SAMPLE and row.claims_limits:
                 step = MethodStep(rig, LiveSettings(row.name), dt)
-            except LiveError:
-                continue  # of the other kind of rig
-            step.begin(rig.home.copy())  # writable, as in flight: to Numba a type of its own
-            step.follow(np.array([1.0, 0.0, 0.0, 0.0]))
+                step.begin(rig.home.copy())  # writable, as in flight: to Numba a type of its own
+                step.follow(np.array([1.0, 0.0, 0.0, 0.0]))
+        except (LiveError, MethodError):
+            continue  # of the other kind of rig
