@@ -3,12 +3,16 @@
 The first alarm of a chain is marked `first`: after one cause many alarms follow, and the operator needs the cause.
 Warnings leave when acknowledged. Faults stay through a latch, until the session is reset; outside one nothing is to be
 reset, and they leave when acknowledged too (`link_lost`, which leads to disconnected), so that the next is a `first`.
+A warning can be shelved, for a time that ends (IEC 62682): it is in the history, and does not stand. What brakes a rig
+cannot be shelved.
 """
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
 HISTORY = 256
+MAX_SHELF_S = 12.0 * 3600.0  # a shift: what is shelved for longer is forgotten
+MAX_SHELVES = 64
 
 
 class Severity(StrEnum):
@@ -36,6 +40,22 @@ class Alarm:
     acknowledged_by: str | None = None
     count: int = 1
     last_time_s: float | None = None  # of the newest occurrence, where there was more than one
+    shelved: bool = False  # it was raised on a shelf: in the history alone
+
+
+@dataclass(frozen=True)
+class Shelf:
+    """Warnings of this code do not stand until the time has come [s, Unix]; `frame` None: of every frame."""
+
+    code: str
+    frame: str | None
+    until_s: float
+    by: str
+    reason: str = ""
+
+    def holds(self, code: str, frame: str | None, time_s: float) -> bool:
+        """Whether a warning raised at `time_s` is shelved by it."""
+        return self.code == code and self.frame in (None, frame) and time_s < self.until_s
 
 
 @dataclass(frozen=True)
@@ -45,6 +65,7 @@ class AlarmBook:
     standing: tuple[Alarm, ...] = ()
     history: tuple[Alarm, ...] = ()
     last_number: int = 0
+    shelves: tuple[Shelf, ...] = ()
 
     def raised(
         self,
@@ -57,7 +78,12 @@ class AlarmBook:
         limit: float | None = None,
         unit: str | None = None,
     ) -> "AlarmBook":
-        """The book with this alarm standing. The same again (code, frame, severity) only counts up, with its time."""
+        """The book with this alarm standing. The same again (code, frame, severity) only counts up, with its time.
+
+        A warning that is shelved is counted in the history, and does not stand.
+        """
+        if severity is Severity.WARNING and any(shelf.holds(code, frame, time_s) for shelf in self.shelves):
+            return self._shelved(Alarm(0, code, severity, message, time_s, frame, value, limit, unit, shelved=True))
         for index, old in enumerate(self.standing):
             same = (old.code, old.frame, old.severity) == (code, frame, severity)
             if same and old.acknowledged_by is None:
@@ -71,7 +97,42 @@ class AlarmBook:
         first = latching and not any(a.severity is not Severity.WARNING for a in self.standing)
         number = self.last_number + 1
         alarm = Alarm(number, code, severity, message, time_s, frame, value, limit, unit, first)
-        return AlarmBook((*self.standing, alarm), (*self.history, alarm)[-HISTORY:], number)
+        standing, history = (*self.standing, alarm), (*self.history, alarm)[-HISTORY:]
+        return replace(self, standing=standing, history=history, last_number=number)
+
+    def _shelved(self, alarm: Alarm) -> "AlarmBook":
+        key = (alarm.code, alarm.frame)
+        newest = next((a for a in reversed(self.history) if a.shelved and (a.code, a.frame) == key), None)
+        if newest is not None:
+            again = replace(newest, count=newest.count + 1, last_time_s=alarm.time_s)
+            return replace(self, history=tuple(again if a is newest else a for a in self.history))
+        number = self.last_number + 1
+        history = (*self.history, replace(alarm, number=number))[-HISTORY:]
+        return replace(self, history=history, last_number=number)
+
+    def shelve(self, shelf: Shelf, now_s: float) -> "AlarmBook":
+        """The book with this shelf in place of an earlier one for the same; standing warnings of it leave.
+
+        Raises ValueError where it has ended already, lasts too long, or there are too many.
+        """
+        if not 0.0 < shelf.until_s - now_s <= MAX_SHELF_S:
+            raise ValueError(f"a shelf of {shelf.until_s - now_s:g} s: expected above 0, at most {MAX_SHELF_S:g} s")
+        others = tuple(s for s in self.unshelved(shelf.code, shelf.frame).shelves if now_s < s.until_s)
+        if len(others) >= MAX_SHELVES:
+            raise ValueError(f"{MAX_SHELVES} shelves stand already: take one away first")
+        kept = tuple(
+            a for a in self.standing if a.severity is not Severity.WARNING or not shelf.holds(a.code, a.frame, now_s)
+        )
+        return replace(self, standing=kept, shelves=(*others, shelf))
+
+    def unshelved(self, code: str, frame: str | None) -> "AlarmBook":
+        """The book without the shelf for this code and frame."""
+        return replace(self, shelves=tuple(s for s in self.shelves if (s.code, s.frame) != (code, frame)))
+
+    def ended(self, now_s: float) -> "AlarmBook":
+        """The book without the shelves whose time is over."""
+        kept = tuple(s for s in self.shelves if now_s < s.until_s)
+        return self if len(kept) == len(self.shelves) else replace(self, shelves=kept)
 
     def acknowledged(self, who: str, numbers: frozenset[int] | None = None) -> "AlarmBook":
         """The book after `who` has seen these alarms (None: all). Warnings leave, faults stay until `cleared`."""

@@ -158,12 +158,12 @@ class Executor:
     # --- findings ---
 
     def apply(self, violations: Iterable[Violation]) -> None:
-        """Warn once until a reset or unload, or latch the fault and brake."""
+        """Warn when a condition begins or returns, or latch the fault and brake."""
         p = self._parts
         for each in violations:
             found = each.finding
             if each.event is None:
-                if self._monitors.is_new(found):
+                if self._monitors.begins(found, seconds(p.clock)):
                     self._raise(found, Severity.WARNING)
                 continue
             if each.event is Event.LINK_LOST:

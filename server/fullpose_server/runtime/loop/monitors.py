@@ -23,6 +23,7 @@ _RECORDER_SILENT_S = 1.0
 _AT_REST = math.radians(0.5)  # [rad/s] a table slower than this that brakes by itself counts as stopped
 _BRAKE_TIMEOUT_S = 5.0
 _ORDER_S = 0.2  # for an order to reach the drive: the first move after arming is not far yet
+_RETURN_S = 1.0  # a condition that was away for so long returns; one that flickers is the same
 _PLAN_LATE_S = 0.5  # ten times as long as between two plans of a preview
 
 
@@ -65,21 +66,29 @@ class Monitors:
     def __init__(self, config: RigConfig, guard: Guard) -> None:
         self._config = config
         self._guard = guard
-        self._warned: set[tuple[str, str | None]] = set()
+        self._seen: dict[tuple[str, str | None], float] = {}  # when each condition was there last [s, monotonic]
+        self._counted: dict[str, int] = {}
         self._misses: list[float] = []
         self._response = DriveResponseMonitor(round(_ORDER_S * config.rate_hz))
 
     def forget(self) -> None:
         """Warn anew of what was warned of before: after a reset or unload."""
-        self._warned.clear()
+        self._seen.clear()
+        self._counted.clear()
         self._response.forget()
 
-    def is_new(self, found: Finding) -> bool:
-        """Whether this was not warned of since the last reset or unload; it is now."""
+    def begins(self, found: Finding, now: float) -> bool:
+        """Whether the condition was not there for a while, `now` [s]: it begins, or returns."""
         key = (found.code, found.frame)
-        new = key not in self._warned
-        self._warned.add(key)
-        return new
+        last = self._seen.get(key, -math.inf)
+        self._seen[key] = now
+        return now - last > _RETURN_S
+
+    def _more(self, word: str, count: int) -> bool:
+        """Whether a count has grown since it was last looked at; one that is smaller has begun anew."""
+        before = self._counted.get(word, 0)
+        self._counted[word] = count
+        return count > before
 
     def drive(self, seen: DriveView) -> list[Violation]:
         """The drive's own status, and whether it does what it was told."""
@@ -180,7 +189,7 @@ class Monitors:
             (live.clock_steps, "clock_steps", "the live source began anew, or its clock was set"),
             (live.strangers, "second_source", second),
         ):
-            if count:
+            if self._more(word, count):
                 found.append(said(f"live_{word}", text))
         if lost:
             text = f"no sample of the live source for {live.age_ms:.0f} ms"

@@ -1,0 +1,54 @@
+"""A condition that returns is said again, acknowledged or not; one that stays is said once."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from fullpose_server.session.states import State
+from tests.fullpose_server.runtime.loop.test_control_loop import config_of
+from tests.support.made_up_rig import MadeUpRig, level, made_up_rig
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Iterator[MadeUpRig]:
+    with made_up_rig(config_of(tmp_path)) as made:
+        made.ready(live={"method": "exact"})
+        made.must("arm")
+        made.run(0.1)
+        yield made
+
+
+@pytest.mark.parametrize("seen", [False, True])
+def test_every_loss_of_the_source_is_said(rig: MadeUpRig, seen: bool) -> None:
+    for losses in (1, 2, 3):
+        rig.source_heard = True
+        rig.must("go_live")
+        rig.run(1.5)
+        assert rig.state is State.LIVE, rig.codes()
+        rig.source_heard = False
+        rig.until(State.ARMED)
+        alarms = [a for a in rig.parts.machine.alarms.history if a.code == "live_source_lost"]
+        assert sum(a.count for a in alarms) == losses
+        assert len(alarms) == (losses if seen else 1)
+        if seen:
+            rig.must("acknowledge")
+            assert not any(a.code == "live_source_lost" for a in rig.parts.machine.alarms.standing)
+        elif losses > 1:
+            assert alarms[0].last_time_s is not None
+            assert alarms[0].last_time_s > alarms[0].time_s
+
+
+def test_a_condition_that_stays_is_said_once(rig: MadeUpRig) -> None:
+    rig.must("go_live")
+    rig.source = lambda k, t: level(k, t) if k < 100 else b"none"  # 400 ticks of a datagram that is no sample
+    for k in range(600):
+        rig.link.waiting.append((b"no sample", "source"))
+        rig.source_heard = True
+        rig.source = level
+        rig.tick()
+        assert k < 1 or sum(a.count for a in rig.parts.machine.alarms.history if a.code == "live_bad") == 1
+    rig.run(2.0)
+    rig.link.waiting.append((b"no sample", "source"))
+    rig.run(0.1)
+    assert sum(a.count for a in rig.parts.machine.alarms.history if a.code == "live_bad") == 2
