@@ -13,6 +13,7 @@ from fullpose_server.api.schemas.session import (
     RecorderOut,
     RigHealth,
     SessionOut,
+    ShelfOut,
 )
 from fullpose_server.runtime.contract.messages import Health, Snapshot
 from fullpose_server.runtime.recording.playback import RunPlayback
@@ -44,6 +45,7 @@ def from_snapshot(snapshot: Snapshot) -> SessionOut:
             "plan": None if snapshot.plan is None else PlanRef(**asdict(snapshot.plan)),
             "alarms": [_alarm(alarm) for alarm in snapshot.alarms],
             "history": [_alarm(alarm) for alarm in snapshot.history],
+            "shelves": [ShelfOut.model_validate(asdict(shelf)) for shelf in snapshot.shelves],
             "run_id": snapshot.run_id,
             "drive": snapshot.drive,
             "health": health_out(snapshot.health),

@@ -7,6 +7,7 @@ machine decided. The machine knows neither what a load is made of (L) nor a move
 from dataclasses import dataclass
 from typing import ClassVar, Generic, TypeAlias, TypeVar
 
+from fullpose_server.session.alarms import Shelf
 from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import NotReadyError
 from fullpose_server.session.states import Action
@@ -20,13 +21,14 @@ class Given(Generic[L, M]):
     """What goes with a command, made ready: what `load` binds, the move of move, home, jog and start.
 
     `binding` goes with arm too, where the caller names the pair. `alarms` are the numbers that `acknowledge` is about
-    (None: all).
+    (None: all), `shelf` is what `shelve` puts up and `unshelve` takes away, by its code and frame.
     """
 
     binding: Binding | None = None
     load: L | None = None
     move: M | None = None
     alarms: frozenset[int] | None = None
+    shelf: Shelf | None = None
 
 
 @dataclass(frozen=True)

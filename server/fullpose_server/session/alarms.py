@@ -49,9 +49,15 @@ class Shelf:
 
     code: str
     frame: str | None
+    since_s: float
     until_s: float
     by: str
     reason: str = ""
+
+    def __post_init__(self) -> None:
+        lasts = self.until_s - self.since_s
+        if not 0.0 < lasts <= MAX_SHELF_S:
+            raise ValueError(f"a shelf of {lasts:g} s: expected above 0, at most {MAX_SHELF_S:g} s")
 
     def holds(self, code: str, frame: str | None, time_s: float) -> bool:
         """Whether a warning raised at `time_s` is shelved by it."""
@@ -110,20 +116,18 @@ class AlarmBook:
         history = (*self.history, replace(alarm, number=number))[-HISTORY:]
         return replace(self, history=history, last_number=number)
 
-    def shelve(self, shelf: Shelf, now_s: float) -> "AlarmBook":
+    def shelve(self, shelf: Shelf) -> "AlarmBook":
         """The book with this shelf in place of an earlier one for the same; standing warnings of it leave.
 
-        Raises ValueError where it has ended already, lasts too long, or there are too many.
+        Of too many shelves the one that ends first goes.
         """
-        if not 0.0 < shelf.until_s - now_s <= MAX_SHELF_S:
-            raise ValueError(f"a shelf of {shelf.until_s - now_s:g} s: expected above 0, at most {MAX_SHELF_S:g} s")
-        others = tuple(s for s in self.unshelved(shelf.code, shelf.frame).shelves if now_s < s.until_s)
-        if len(others) >= MAX_SHELVES:
-            raise ValueError(f"{MAX_SHELVES} shelves stand already: take one away first")
-        kept = tuple(
-            a for a in self.standing if a.severity is not Severity.WARNING or not shelf.holds(a.code, a.frame, now_s)
-        )
-        return replace(self, standing=kept, shelves=(*others, shelf))
+        others = self.unshelved(shelf.code, shelf.frame).ended(shelf.since_s).shelves
+        shelves = tuple(sorted((*others, shelf), key=lambda s: s.until_s)[-MAX_SHELVES:])
+
+        def stays(alarm: Alarm) -> bool:
+            return alarm.severity is not Severity.WARNING or not shelf.holds(alarm.code, alarm.frame, shelf.since_s)
+
+        return replace(self, standing=tuple(a for a in self.standing if stays(a)), shelves=shelves)
 
     def unshelved(self, code: str, frame: str | None) -> "AlarmBook":
         """The book without the shelf for this code and frame."""

@@ -120,15 +120,13 @@ class SessionMachine(Generic[L, M]):
             self._check_loadable(given.binding)
         if command is Command.ARM:
             self.check_pair(given.binding)
+        alarms = self._alarms_after(command, who, given)
         row = self._find(command)
         orders = () if row is None else tuple(order_of(word, given, who) for word in row.actions)
         if command not in NEEDS_NO_LEASE:
             self._lease = self._lease.checked(who, token, now)
-        if command is Command.ACKNOWLEDGE:
-            self.alarms = self.alarms.acknowledged(who, given.alarms)
-            if self.state not in table.LATCHED:
-                # No reset comes here: what stood on would take `first` from the next fault.
-                self.alarms = self.alarms.cleared()
+        if alarms is not self.alarms:
+            self.alarms = alarms
             self.revision += 1
         if row is None:  # `check` has looked: only what is done anywhere has no row
             return ()
@@ -174,7 +172,14 @@ class SessionMachine(Generic[L, M]):
         self.alarms = self.alarms.raised(code, severity, message, time_s, frame, value, limit, unit)
         self.revision += 1
         wanted = (code, frame, severity)
-        return next(a for a in reversed(self.alarms.standing) if (a.code, a.frame, a.severity) == wanted)
+        return next(a for a in reversed(self.alarms.history) if (a.code, a.frame, a.severity) == wanted)
+
+    def end_shelves(self, time_s: float) -> None:
+        """Take away the shelves whose time is over, `time_s` [s, Unix]."""
+        alarms = self.alarms.ended(time_s)
+        if alarms is not self.alarms:
+            self.alarms = alarms
+            self.revision += 1
 
     def lease_action(self, action: str, who: str, now: float, to: str | None = None) -> Lease:
         """take, takeover (by force), release, renew, request, grant. Raises `LeaseError` or `SessionError`."""
@@ -203,6 +208,20 @@ class SessionMachine(Generic[L, M]):
         return self._owner.due(self._lease.silence(now))
 
     # --- inside ---
+
+    def _alarms_after(self, command: Command, who: str, given: Given[L, M]) -> AlarmBook:
+        """What becomes of the alarms. Raises `NotReadyError` where `command` needs a shelf."""
+        if command is Command.ACKNOWLEDGE:
+            seen = self.alarms.acknowledged(who, given.alarms)
+            # Where no reset comes, what stood on would take `first` from the next fault.
+            return seen if self.state in table.LATCHED else seen.cleared()
+        if command not in (Command.SHELVE, Command.UNSHELVE):
+            return self.alarms
+        if given.shelf is None:
+            raise NotReadyError("nothing_to_shelve", f"{command} needs the code of a warning")
+        if command is Command.SHELVE:
+            return self.alarms.shelve(given.shelf)
+        return self.alarms.unshelved(given.shelf.code, given.shelf.frame)
 
     def _find(self, trigger: Command | Event) -> table.Transition | None:
         holding = {When.FLIGHT if self._flight else When.MOVE, When.LINKED if self.linked else When.UNLINKED}

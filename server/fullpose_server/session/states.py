@@ -48,6 +48,8 @@ class Command(StrEnum):
     GO_LIVE = "go_live"
     ESTOP = "estop"
     ACKNOWLEDGE = "acknowledge"
+    SHELVE = "shelve"
+    UNSHELVE = "unshelve"
     RESET = "reset"
 
 

@@ -83,8 +83,8 @@ TABLE: tuple[Transition, ...] = (
     _row(LATCHED, C.RESET, S.DISCONNECTED, A.CLEAR, A.UNBIND, when=When.UNLINKED),
 )
 
-# Alarms can be acknowledged wherever the session stands; the state does not change.
-ANYWHERE = frozenset({Command.ACKNOWLEDGE})
+# Alarms can be acknowledged and shelved wherever the session stands; the state does not change.
+ANYWHERE = frozenset({Command.ACKNOWLEDGE, Command.SHELVE, Command.UNSHELVE})
 
 
 def find(state: State, trigger: Command | Event, holding: frozenset[When]) -> Transition | None:

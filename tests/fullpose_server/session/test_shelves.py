@@ -10,7 +10,7 @@ WARNING, FAULT = Severity.WARNING, Severity.FAULT
 
 
 def test_a_shelved_warning_is_history_and_does_not_stand_until_the_shelf_ends() -> None:
-    book = AlarmBook().raised("late", WARNING, "", 0.0).shelve(Shelf("late", None, 100.0, "anna"), 1.0)
+    book = AlarmBook().raised("late", WARNING, "", 0.0).shelve(Shelf("late", None, 1.0, 100.0, "anna"))
     assert book.standing == ()
     for time_s in (2.0, 3.0, 99.9):
         book = book.raised("late", WARNING, "", time_s)
@@ -26,16 +26,16 @@ def test_a_shelved_warning_is_history_and_does_not_stand_until_the_shelf_ends() 
 
 
 def test_a_shelf_is_of_one_frame_or_of_all() -> None:
-    book = AlarmBook().shelve(Shelf("slow", "base", 10.0, "anna"), 0.0)
+    book = AlarmBook().shelve(Shelf("slow", "base", 0.0, 10.0, "anna"))
     assert book.raised("slow", WARNING, "", 1.0, frame="base").standing == ()
     assert len(book.raised("slow", WARNING, "", 1.0, frame="outer").standing) == 1
-    every = book.shelve(Shelf("slow", None, 10.0, "anna"), 0.0)
+    every = book.shelve(Shelf("slow", None, 0.0, 10.0, "anna"))
     assert every.raised("slow", WARNING, "", 1.0, frame="outer").standing == ()
     assert len(every.unshelved("slow", None).raised("slow", WARNING, "", 1.0, frame="outer").standing) == 1
 
 
 def test_what_brakes_a_rig_stands_on_any_shelf() -> None:
-    book = AlarmBook().raised("late", FAULT, "", 0.0).shelve(Shelf("late", None, 10.0, "anna"), 0.0)
+    book = AlarmBook().raised("late", FAULT, "", 0.0).shelve(Shelf("late", None, 0.0, 10.0, "anna"))
     assert len(book.standing) == 1
     assert len(book.raised("late", Severity.EMERGENCY, "", 1.0).standing) == 2
 
@@ -43,24 +43,24 @@ def test_what_brakes_a_rig_stands_on_any_shelf() -> None:
 @pytest.mark.parametrize("lasts", [0.0, -1.0, MAX_SHELF_S * 1.001])
 def test_a_shelf_has_an_end_in_sight(lasts: float) -> None:
     with pytest.raises(ValueError, match="expected above 0"):
-        AlarmBook().shelve(Shelf("late", None, 50.0 + lasts, "anna"), 50.0)
+        Shelf("late", None, 50.0, 50.0 + lasts, "anna")
 
 
 def test_shelves_are_bounded_and_replaced() -> None:
     book = AlarmBook()
-    for k in range(MAX_SHELVES):
-        book = book.shelve(Shelf(f"c{k}", None, 10.0, "anna"), 0.0)
-    with pytest.raises(ValueError, match="take one away"):
-        book.shelve(Shelf("more", None, 10.0, "anna"), 0.0)
-    again = book.shelve(Shelf("c3", None, 20.0, "ben"), 0.0)
+    for k in range(MAX_SHELVES + 1):
+        book = book.shelve(Shelf(f"c{k}", None, 0.0, 10.0 + k, "anna"))
+    assert [s.code for s in book.shelves] == [f"c{k}" for k in range(1, MAX_SHELVES + 1)]  # the first to end has gone
+    again = book.shelve(Shelf("c3", None, 0.0, 20.0, "ben"))
     assert [s.by for s in again.shelves if s.code == "c3"] == ["ben"]
-    assert book.shelve(Shelf("more", None, 30.0, "anna"), 10.0).shelves == (Shelf("more", None, 30.0, "anna"),)
+    later = Shelf("more", None, 1000.0, 1030.0, "anna")
+    assert book.shelve(later).shelves == (later,)
 
 
 @given(st.lists(st.tuples(st.sampled_from("ab"), st.sampled_from(list(Severity)), st.booleans()), max_size=40))
 def test_nothing_that_is_raised_is_lost(raised: list[tuple[str, Severity, bool]]) -> None:
     """Counts add up to what was raised, shelved or not, acknowledged or not."""
-    book = AlarmBook().shelve(Shelf("a", None, 20.0, "anna"), 0.0)
+    book = AlarmBook().shelve(Shelf("a", None, 0.0, 20.0, "anna"))
     for k, (code, severity, seen) in enumerate(raised):
         book = book.raised(code, severity, "", float(k))
         if seen:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 from pydantic import Field, create_model, model_validator
 
 from fullpose_server.api.schemas.base import Four, FrameName, Number, Options, Ordinal, Wire, Word, check_one
-from fullpose_server.session.alarms import Severity
+from fullpose_server.session.alarms import MAX_SHELF_S, Severity
 from fullpose_server.session.states import Command, State
 
 
@@ -65,6 +65,22 @@ class AcknowledgeArgs(Wire):
     numbers: list[Ordinal] | None = Field(default=None, max_length=256, description="Of alarms; null: all that stand")
 
 
+class ShelfArgs(Wire):
+    """The warning that is kept out of sight, for a time that ends. Nothing that brakes a rig can be shelved."""
+
+    code: Annotated[str, Field(min_length=1, max_length=64)]
+    frame: FrameName | None = Field(default=None, description="null: of every frame")
+    minutes: Number = Field(gt=0.0, le=MAX_SHELF_S / 60.0, description="How long; then it stands again when it returns")
+    reason: str = Field(default="", max_length=200)
+
+
+class UnshelveArgs(Wire):
+    """Which shelf is taken away."""
+
+    code: Annotated[str, Field(min_length=1, max_length=64)]
+    frame: FrameName | None = None
+
+
 class CommandBody(Wire):
     """What every command has: its word, its arguments, the lease."""
 
@@ -80,6 +96,8 @@ _ARGS: dict[Command, tuple[type[Wire], bool]] = {
     Command.MOVE: (MoveArgs, False),
     Command.JOG: (JogArgs, False),
     Command.ACKNOWLEDGE: (AcknowledgeArgs, True),
+    Command.SHELVE: (ShelfArgs, False),
+    Command.UNSHELVE: (UnshelveArgs, False),
 }
 
 
@@ -166,6 +184,18 @@ class AlarmOut(Wire):
     last_time_s: float | None = Field(
         default=None, description="Of the newest occurrence, where there was more than one"
     )
+    shelved: bool = Field(default=False, description="It was raised while shelved: it never stood")
+
+
+class ShelfOut(Wire):
+    """A warning that is kept out of sight: it is in the history, and does not stand."""
+
+    code: str
+    frame: FrameName | None
+    since_s: float = Field(description="Seconds since 1970")
+    until_s: float = Field(description="Seconds since 1970; then it stands again when it returns")
+    by: str
+    reason: str
 
 
 class RecorderOut(Wire):
@@ -221,6 +251,7 @@ class SessionOut(Wire):
     plan: PlanRef | None
     alarms: list[AlarmOut] = Field(description="Those that stand")
     history: list[AlarmOut]
+    shelves: list[ShelfOut] = Field(default=[], description="Warnings that are kept out of sight for a time")
     run_id: str | None
     drive: str | None
     health: RigHealth

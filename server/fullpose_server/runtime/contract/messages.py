@@ -5,7 +5,7 @@ from typing import Any
 
 import msgspec
 
-from fullpose_server.session.alarms import Alarm
+from fullpose_server.session.alarms import Alarm, Shelf
 from fullpose_server.session.lease import Lease, LeaseToken
 
 MAX_REQUEST = 1 << 16  # [bytes] what the rig process reads of a packet; of a longer one it would see a part
@@ -96,6 +96,7 @@ class Published:
     plan: PlanRef | None
     alarms: list[Alarm]
     history: list[Alarm]
+    shelves: list[Shelf]
     realtime: str
     run_id: str | None
     drive: str
@@ -145,6 +146,7 @@ class Snapshot:
     plan: PlanRef | None
     alarms: list[Alarm]
     history: list[Alarm]
+    shelves: list[Shelf]
     run_id: str | None
     drive: str
     health: Health

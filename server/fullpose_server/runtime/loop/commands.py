@@ -163,6 +163,8 @@ class CommandHandler:
                 return GivenOf(move=orders.move_of(command, request.args, p.config.rig, p.motion))
             case Command.GO_LIVE:
                 orders.check_inside(p.config.rig, p.motion)
+            case Command.SHELVE | Command.UNSHELVE:
+                return GivenOf(shelf=orders.shelf_of(request.args, request.who, p.clock.wall_ns() / 1e9))
             case Command.ACKNOWLEDGE:
                 return GivenOf(alarms=orders.alarms_of(request.args))
             case _:

@@ -192,6 +192,7 @@ class Executor:
     def alarm(self, code: str, severity: Severity, message: str, **evidence: Any) -> None:
         """Raise an alarm and log it."""
         p = self._parts
+        p.machine.end_shelves(p.clock.wall_ns() / 1e9)
         raised = p.machine.alarm(code, severity, message, p.clock.wall_ns() / 1e9, **evidence)
         if raised.count == 1:
             if severity is not Severity.WARNING and p.state.run_id is None and p.state.ticks:

@@ -16,6 +16,7 @@ from fullpose_server.runtime.live.source import LiveSource, ReadyLive
 from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.path_player import PathPlayer
 from fullpose_server.runtime.motion.point_to_point import MoveError, PointMove
+from fullpose_server.session.alarms import Shelf
 from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import CodedError
 from fullpose_server.session.states import Command
@@ -143,6 +144,19 @@ def _four(args: dict[str, Any], name: str) -> np.ndarray[Any, np.dtype[np.float6
     if not isinstance(value, list) or len(value) != 4 or not all(isinstance(v, int | float) for v in value):
         raise OrderError("bad_arguments", f"{name} must be four numbers [deg], base first")
     return np.array(value, float)
+
+
+def shelf_of(args: dict[str, Any], who: str, wall_s: float) -> Shelf:
+    """What `shelve` puts up, from `wall_s` [s, Unix] on, and `unshelve` takes away. Raises `OrderError`."""
+    code, frame, minutes = args.get("code"), args.get("frame"), args.get("minutes", 1.0)
+    if not isinstance(code, str) or not code:
+        raise OrderError("bad_arguments", "code must be that of a warning, such as live_source_stale")
+    if frame is not None and frame not in FRAMES:
+        raise OrderError("bad_arguments", f"frame must be one of {', '.join(FRAMES)}, or left out for all")
+    try:
+        return Shelf(code, frame, wall_s, wall_s + 60.0 * float(minutes), who, str(args.get("reason", "")))
+    except (TypeError, ValueError) as cause:
+        raise OrderError("bad_arguments", f"minutes = {minutes!r}: {cause}") from cause
 
 
 def alarms_of(args: dict[str, Any]) -> frozenset[int] | None:

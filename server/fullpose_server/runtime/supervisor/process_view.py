@@ -154,6 +154,7 @@ class ProcessView:
             plan=published.plan,
             alarms=published.alarms,
             history=published.history,
+            shelves=published.shelves,
             run_id=published.run_id,
             drive=published.drive,
             health=health,
