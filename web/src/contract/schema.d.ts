@@ -659,6 +659,12 @@ export interface components {
             number: number;
             severity: components["schemas"]["Severity"];
             /**
+             * Shelved
+             * @description It was raised while shelved: it never stood
+             * @default false
+             */
+            shelved: boolean;
+            /**
              * Time S
              * @description Seconds since 1970, of the first occurrence
              */
@@ -2426,6 +2432,12 @@ export interface components {
             rig: string;
             /** Run Id */
             run_id: string | null;
+            /**
+             * Shelves
+             * @description Warnings that are kept out of sight for a time
+             * @default []
+             */
+            shelves: components["schemas"]["ShelfOut"][];
             state: components["schemas"]["State"];
         };
         /**
@@ -2434,6 +2446,63 @@ export interface components {
          * @enum {string}
          */
         Severity: "warning" | "fault" | "emergency";
+        /**
+         * ShelfArgs
+         * @description The warning that is kept out of sight, for a time that ends. Nothing that brakes a rig can be shelved.
+         */
+        ShelfArgs: {
+            /** Code */
+            code: string;
+            /**
+             * Frame
+             * @description null: of every frame
+             */
+            frame?: ("base" | "outer" | "middle" | "inner") | null;
+            /**
+             * Minutes
+             * @description How long; then it stands again when it returns
+             */
+            minutes: number;
+            /**
+             * Reason
+             * @default
+             */
+            reason: string;
+        };
+        /**
+         * ShelfOut
+         * @description A warning that is kept out of sight: it is in the history, and does not stand.
+         */
+        ShelfOut: {
+            /** By */
+            by: string;
+            /** Code */
+            code: string;
+            /** Frame */
+            frame: ("base" | "outer" | "middle" | "inner") | null;
+            /** Reason */
+            reason: string;
+            /**
+             * Since S
+             * @description Seconds since 1970
+             */
+            since_s: number;
+            /**
+             * Until S
+             * @description Seconds since 1970; then it stands again when it returns
+             */
+            until_s: number;
+        };
+        /** Shelve */
+        Shelve: {
+            args: components["schemas"]["ShelfArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "shelve";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
         /**
          * Solved
          * @description Answer to one `samples` message, row by row; `limited.sample` counts within the message.
@@ -2984,6 +3053,26 @@ export interface components {
              */
             command: "unload";
             lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /** Unshelve */
+        Unshelve: {
+            args: components["schemas"]["UnshelveArgs"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            command: "unshelve";
+            lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * UnshelveArgs
+         * @description Which shelf is taken away.
+         */
+        UnshelveArgs: {
+            /** Code */
+            code: string;
+            /** Frame */
+            frame?: ("base" | "outer" | "middle" | "inner") | null;
         };
         /**
          * VerdictOut
@@ -4365,7 +4454,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Connect"] | components["schemas"]["Load"] | components["schemas"]["Unload"] | components["schemas"]["Arm"] | components["schemas"]["Disarm"] | components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Stop"] | components["schemas"]["Move"] | components["schemas"]["Home"] | components["schemas"]["Jog"] | components["schemas"]["GoLive"] | components["schemas"]["Estop"] | components["schemas"]["Acknowledge"] | components["schemas"]["Reset"];
+                "application/json": components["schemas"]["Connect"] | components["schemas"]["Load"] | components["schemas"]["Unload"] | components["schemas"]["Arm"] | components["schemas"]["Disarm"] | components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Stop"] | components["schemas"]["Move"] | components["schemas"]["Home"] | components["schemas"]["Jog"] | components["schemas"]["GoLive"] | components["schemas"]["Estop"] | components["schemas"]["Acknowledge"] | components["schemas"]["Shelve"] | components["schemas"]["Unshelve"] | components["schemas"]["Reset"];
             };
         };
         responses: {

@@ -52,3 +52,54 @@ def test_a_condition_that_stays_is_said_once(rig: MadeUpRig) -> None:
     rig.link.waiting.append((b"no sample", "source"))
     rig.run(0.1)
     assert sum(a.count for a in rig.parts.machine.alarms.history if a.code == "live_bad") == 2
+
+
+def lose_the_source(rig: MadeUpRig) -> None:
+    rig.source_heard = True
+    rig.must("go_live")
+    rig.run(1.5)
+    rig.source_heard = False
+    rig.until(State.ARMED)
+
+
+def standing(rig: MadeUpRig) -> set[str]:
+    return {alarm.code for alarm in rig.parts.machine.alarms.standing}
+
+
+def test_a_shelved_warning_does_not_stand_until_its_time_is_over(rig: MadeUpRig) -> None:
+    for code in ("live_source_lost", "live_source_stale"):
+        rig.must("shelve", code=code, minutes=0.1, reason="the host is being repaired")
+    lose_the_source(rig)  # and the rig has braked all the same
+    assert standing(rig) == set()
+    assert {a.code for a in rig.parts.machine.alarms.history if a.shelved} >= {"live_source_lost"}
+    shelf = rig.parts.machine.alarms.shelves[0]
+    assert (shelf.by, shelf.reason) == ("anna", "the host is being repaired")
+    rig.run(6.5)
+    lose_the_source(rig)
+    assert "live_source_lost" in standing(rig)
+    assert rig.parts.machine.alarms.shelves == ()
+
+
+def test_a_shelf_is_taken_away(rig: MadeUpRig) -> None:
+    rig.must("shelve", code="live_source_lost", minutes=60)
+    rig.must("unshelve", code="live_source_lost")
+    lose_the_source(rig)
+    assert "live_source_lost" in standing(rig)
+
+
+@pytest.mark.parametrize(
+    ("args", "told"),
+    [
+        ({}, "code must be"),
+        ({"code": "x", "frame": "middle-left"}, "frame must be one of base"),
+        ({"code": "x", "minutes": 1e9}, "expected above 0"),
+        ({"code": "x", "minutes": "long"}, "minutes = 'long'"),
+    ],
+)
+def test_a_shelf_that_cannot_be_changes_nothing(rig: MadeUpRig, args: dict[str, object], told: str) -> None:
+    before = rig.parts.machine.alarms
+    reply = rig.say("shelve", **args)
+    assert not reply.ok
+    assert reply.error is not None
+    assert told in reply.error.message
+    assert rig.parts.machine.alarms is before
