@@ -34,6 +34,7 @@ class LeaseModel(RuleBasedStateMachine):
         self.heard = 0.0
         self.asked: list[str] = []
         self.standing: list[Alarm] = []
+        self.shelves: dict[str, float] = {}  # until when [s], by the code
         self.past: dict[int, Alarm] = {}
 
     # --- time and silence ---

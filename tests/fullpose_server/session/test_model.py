@@ -6,6 +6,7 @@ show.
 """
 
 import dataclasses
+import math
 import random
 
 from hypothesis import HealthCheck, settings
@@ -14,7 +15,7 @@ from hypothesis.stateful import invariant, rule
 
 from fullpose_server.session import table
 from fullpose_server.session.actions import Bind, Given, GoLive, Move, Order, Position
-from fullpose_server.session.alarms import HISTORY, Alarm, Severity
+from fullpose_server.session.alarms import HISTORY, Alarm, Severity, Shelf
 from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import (
     BindingError,
@@ -35,6 +36,7 @@ LIVE = Binding("live", "c" * 64, *RIG, live=True)
 OTHER_PLAN = dataclasses.replace(PLAN, plan_hash="9" * 64)
 OTHER_RIG = dataclasses.replace(PLAN, rig_hash="d" * 64)
 FREE = (C.STOP, C.ESTOP)
+SHELVES = (C.SHELVE, C.UNSHELVE)
 LATCHED = (S.ESTOPPED, S.FAULTED)
 MOVING = (S.POSITIONING, S.RUNNING, S.HELD, S.STOPPING, S.LIVE)
 SELDOM: tuple[Command | Event, ...] = (
@@ -71,9 +73,10 @@ class Model(LeaseModel):
         return rows[0] if rows else None
 
     def command_refusal(
-        self, command: Command, who: str, token: LeaseToken | None, binding: Binding | None
+        self, command: Command, who: str, token: LeaseToken | None, given: Given[str, str]
     ) -> Refusal | None:
         """What is to be raised, and its code; None where the command is to be done."""
+        binding = given.binding
         if command not in FREE:
             if token is None or self.holder is None:
                 return LeaseError, "lease_needed"
@@ -81,7 +84,7 @@ class Model(LeaseModel):
                 return LeaseError, "lease_lost"
             if token.sequence <= self.sequence:
                 return LeaseError, "stale_command"
-        if command is not ACK and self.row(command) is None:
+        if command not in (ACK, *SHELVES) and self.row(command) is None:
             return IllegalCommandError, "illegal_command"
         live = self.bound is not None and self.bound.live
         unseen = any(a.severity is not Severity.WARNING and a.acknowledged_by is None for a in self.standing)
@@ -99,6 +102,8 @@ class Model(LeaseModel):
             assert self.bound is not None
             same = (binding.plan_hash, binding.rig_hash) == (self.bound.plan_hash, self.bound.rig_hash)
             return None if same else (BindingError, "wrong_pair")
+        if command in SHELVES and given.shelf is None:
+            return NotReadyError, "nothing_to_shelve"
         return None
 
     @rule(
@@ -107,6 +112,7 @@ class Model(LeaseModel):
         shown=st.sampled_from(TOKENS),
         binding=st.sampled_from([None, PLAN, LIVE, OTHER_PLAN, OTHER_RIG]),
         numbers=st.none() | st.frozensets(st.integers(1, 8)),
+        shelved=st.none() | st.tuples(st.sampled_from(["a", "b"]), st.floats(1.0, 60.0)),
     )
     def command(
         self,
@@ -115,14 +121,17 @@ class Model(LeaseModel):
         shown: tuple[int, int] | None,
         binding: Binding | None,
         numbers: frozenset[int] | None,
+        shelved: tuple[str, float] | None = None,
     ) -> None:
         token = None if shown is None else LeaseToken(self.epoch + shown[0], self.sequence + shown[1])
-        expected = self.command_refusal(command, who, token, binding)
+        shelf = None if shelved is None else Shelf(shelved[0], None, self.now, self.now + shelved[1], who)
+        made_ready = Given(binding, LOAD, MOVE, numbers, shelf)
+        expected = self.command_refusal(command, who, token, made_ready)
         before = vars(self.machine).copy()
         actions: tuple[Order[str, str], ...] = ()
         given: Refusal | None = None
         try:
-            actions = self.machine.command(command, who, token, self.now, Given(binding, LOAD, MOVE, numbers))
+            actions = self.machine.command(command, who, token, self.now, made_ready)
         except SessionError as refusal:
             given = (type(refusal), refusal.code)
         assert given == expected, command
@@ -136,6 +145,15 @@ class Model(LeaseModel):
             assert actions == ()
             self.revision += 1
             self.acknowledge(who, numbers)
+            return
+        if shelf is not None and command in SHELVES:
+            assert actions == ()
+            self.revision += 1
+            self.shelves.pop(shelf.code, None)
+            if command is C.SHELVE:
+                self.shelves[shelf.code] = shelf.until_s
+                warnings = (shelf.code, Severity.WARNING)
+                self.standing = [a for a in self.standing if (a.code, a.severity) != warnings]
             return
         row = self.row(command)
         assert row is not None
@@ -214,6 +232,16 @@ class Model(LeaseModel):
 
     @rule(severity=st.sampled_from(list(Severity)), code=st.sampled_from(["a", "b"]))
     def alarm(self, severity: Severity, code: str) -> None:
+        if severity is Severity.WARNING and self.now < self.shelves.get(code, -math.inf):
+            before = [a for a in self.past.values() if a.shelved and a.code == code]
+            if before:
+                expected = dataclasses.replace(before[-1], count=before[-1].count + 1, last_time_s=self.now)
+            else:
+                expected = Alarm(len(self.past) + 1, code, severity, "told", self.now, shelved=True)
+            self.past[expected.number] = expected
+            self.revision += 1
+            assert self.machine.alarm(code, severity, "told", self.now) == expected
+            return
         again = [a for a in self.standing if (a.code, a.severity, a.acknowledged_by) == (code, severity, None)]
         if again:
             expected = dataclasses.replace(again[0], count=again[0].count + 1, last_time_s=self.now)
