@@ -40,7 +40,11 @@ describe("the stop channel", () => {
       { type: "estop", rig: "b", id: 2 },
     ]);
     world.socket.says({ type: "stopped", id: 2, rig: "b", done: DONE });
-    world.socket.says({ type: "problem", id: 1, problem: { type: "x", title: "Conflict", status: 409, detail: "idle" } });
+    world.socket.says({
+      type: "problem",
+      id: 1,
+      problem: { type: "x", title: "Conflict", status: 409, detail: "idle" },
+    });
     expect(await second).toEqual(DONE);
     await expect(first).rejects.toMatchObject({ status: 409, message: "idle" });
   });

@@ -56,10 +56,12 @@ describe("Stop and E-stop", () => {
     await press(/^Stop/);
     console.channel = null;
     await press(/^Stop/);
-    await expect.poll(() => console.asked).toEqual([
-      ["channel stop", "bench"],
-      ["stop", "bench"],
-    ]);
+    await expect
+      .poll(() => console.asked)
+      .toEqual([
+        ["channel stop", "bench"],
+        ["stop", "bench"],
+      ]);
   });
 
   it("of which something is not known say what", async () => {
