@@ -6,6 +6,7 @@ import { clockTime } from "./format";
 function alarm(given: Partial<Alarm>): Alarm {
   return {
     number: 1,
+    shelved: false,
     code: "rate_limit",
     severity: "fault",
     message: "",

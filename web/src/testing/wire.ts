@@ -18,6 +18,7 @@ export function alarm(given: Partial<Alarm> = {}): Alarm {
     first: false,
     count: 1,
     time_s: 0,
+    shelved: false,
     ...given,
   };
 }
@@ -33,6 +34,7 @@ export function session(given: Partial<Snapshot> = {}): Snapshot {
     plan: null,
     alarms: [],
     history: [],
+    shelves: [],
     pose_deg: null,
     run_id: null,
     health: {
