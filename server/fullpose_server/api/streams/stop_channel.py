@@ -11,7 +11,7 @@ from fullpose_server.api.problems import ApiError, validation_problem
 from fullpose_server.api.schemas.base import Problem, Wire
 from fullpose_server.api.schemas.stop import RigStopped, StopIn, StopPing, StopPong, StopRefused, StopRig
 from fullpose_server.api.stopping import answer, who_stops
-from fullpose_server.api.streams.tasks import Tasks, close_for, send_text
+from fullpose_server.api.streams.tasks import NOT_TEXT, Tasks, close_for, send_text
 from fullpose_server.runtime.contract.messages import Reply
 from fullpose_server.session.states import Command
 
@@ -41,7 +41,7 @@ class StopChannel:
     def _take(self, text: str | None) -> None:
         try:
             if text is None:
-                raise ApiError(422, "validation", "expected a JSON message in a text frame, this one is binary")
+                raise NOT_TEXT  # told, and the channel stays: it may be needed next
             message = _INCOMING.validate_json(text)
         except ValidationError as error:
             self._say(StopRefused(problem=validation_problem(error.errors())))

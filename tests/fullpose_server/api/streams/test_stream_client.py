@@ -124,10 +124,11 @@ def test_an_error_of_our_own_is_told_logged_and_closes(
     assert left == set()
 
 
-def test_a_binary_message_is_a_problem_and_the_stream_goes_on() -> None:
+def test_a_binary_message_is_a_problem_and_ends_the_stream() -> None:
     browser = Browser(b"\x00", json.dumps({"type": "ping", "t": 3.0}), leaves=True)
     assert talk(browser, Source("", ValueError())) == set()
-    assert [message["type"] for message in browser.said] == ["pong", "problem", "pong"]
+    assert [message["type"] for message in browser.said] == ["pong", "problem"]
+    assert [message["code"] for message in browser.sent if message["type"] == "websocket.close"] == [1003]
 
 
 def test_a_client_that_leaves_is_no_error(caplog: pytest.LogCaptureFixture) -> None:
