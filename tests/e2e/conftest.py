@@ -41,6 +41,12 @@ class Server:
     url: str
     pid: int
 
+    @property
+    def gate(self) -> int:
+        """The process of its stop gate."""
+        children = Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text().split()
+        return next(int(pid) for pid in children if "gate.process" in Path(f"/proc/{pid}/cmdline").read_text())
+
 
 class Pages:
     """Browser windows of one test, each of a profile of its own, and what went wrong in them."""

@@ -26,8 +26,14 @@ def test_a_stop_that_nobody_answered_is_never_taken_for_one(page: Page, server: 
     alerts, unconfirmed = page.get_by_role("alert"), page.get_by_test_id("unconfirmed")
     lost = alerts.filter(has_text="Connection lost")
     page.get_by_role("navigation", name="Pages").get_by_role("link", name="Rigs").click()
+    channel = page.get_by_test_id("stop-round-trip")
+    expect(channel).to_contain_text("ms", timeout=SOON_MS)
     os.kill(server.pid, signal.SIGSTOP)
     try:
+        # The stop gate is a process of its own: with the server alone stopped, stops still go.
+        expect(lost).to_contain_text("by their own channel, which is open", timeout=SOON_MS)
+        expect(channel).to_contain_text("ms")
+        os.kill(server.gate, signal.SIGSTOP)
         page.keyboard.press("Escape")
         expect(unconfirmed).to_contain_text("Stop not confirmed: The server did not answer within 2 s", timeout=SOON_MS)
         # On every page, and in plain words.
@@ -41,6 +47,7 @@ def test_a_stop_that_nobody_answered_is_never_taken_for_one(page: Page, server: 
         page.wait_for_timeout(2500)
         expect(unconfirmed).to_be_visible()
     finally:
+        os.kill(server.gate, signal.SIGCONT)
         os.kill(server.pid, signal.SIGCONT)
     # A rig without a drive has nothing left to stop.
     expect(lost).to_be_hidden(timeout=SOON_MS)

@@ -119,9 +119,11 @@ class Keeper:
             self.ending()
 
     async def _watch_on(self) -> None:
+        silent = False  # seen so once before: a server that was itself suspended reads first what has come meanwhile
         while True:
             await asyncio.sleep(RETRY_S)
-            if self._status.down_since is None and time.monotonic() - self._heard > SILENT_S:
+            before, silent = silent, time.monotonic() - self._heard > SILENT_S
+            if before and silent and self._status.down_since is None:
                 self._lost(f"it has told nothing for {SILENT_S:g} s")
             if self._status.down_since is not None:
                 await asyncio.to_thread(self._gate.end)

@@ -16,16 +16,20 @@ it("a page that just opened has lost nothing; a second attempt has", () => {
 });
 
 it("never says that Stop works where the connection is lost", () => {
-  const text = linkWarning(closed, true) ?? "";
+  const text = linkWarning(closed, true, false) ?? "";
   expect(text).toContain("cannot reach the rig");
   expect(text).toContain("hardware E-stop");
   expect(text).not.toMatch(/work/);
-  expect(linkWarning(closed, false)).toBe(text);
+  expect(linkWarning(closed, false, false)).toBe(text);
+});
+
+it("says by what Stop still goes where its channel is open", () => {
+  expect(linkWarning(closed, true, true)).toMatch(/by their own channel, which is open/);
 });
 
 it("old data on an open connection disables motion, not Stop", () => {
-  expect(linkWarning(opened, true)).toMatch(/Motion is disabled\. Stop and E-stop are sent/);
-  expect(linkWarning(opened, false)).toBeNull();
+  expect(linkWarning(opened, true, true)).toMatch(/Motion is disabled\. Stop and E-stop are sent/);
+  expect(linkWarning(opened, false, true)).toBeNull();
 });
 
 it("lists that could not be read say what that means for Stop where no rig is known", () => {

@@ -6,11 +6,15 @@ export function lost(link: Link): boolean {
   return link.phase === "closed" || (link.phase === "connecting" && (link.session !== null || link.attempt > 1));
 }
 
-export function linkWarning(link: Link, stale: boolean): string | null {
+/** `channel`: whether the stop channel is open, which is another connection, to another process. */
+export function linkWarning(link: Link, stale: boolean, channel: boolean): string | null {
   if (lost(link)) {
+    const stops = channel
+      ? "Stop and E-stop are sent by their own channel, which is open; where one is not confirmed, use the hardware E-stop."
+      : "Stop and E-stop cannot reach the rig from here: use the hardware E-stop.";
     return (
-      "Connection lost, trying again: what is shown is the last known, not the rig now. Stop and E-stop cannot reach the rig " +
-      "from here: use the hardware E-stop. A rig whose operator or server stays silent holds, then brakes, by itself."
+      `Connection lost, trying again: what is shown is the last known, not the rig now. ${stops} ` +
+      "A rig whose operator or server stays silent holds, then brakes, by itself."
     );
   }
   if (!stale) return null;

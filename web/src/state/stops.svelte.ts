@@ -62,7 +62,10 @@ export class Stops {
     try {
       const done = (await this.#line.press(what, rig)) ?? (await this.api[what](rig));
       this.#answered(what, rig, press);
-      if (done.unknown) this.unconfirmed = { what, rig, why: done.unknown };
+      if (!done.unknown) return;
+      // Where no rig process runs there is nothing left to press for: said, and no alarm.
+      if (settled(what, done.state_after)) this.notices.say("info", done.unknown);
+      else this.unconfirmed = { what, rig, why: done.unknown };
     } catch (error) {
       if (error instanceof ApiError && error.status === 409) {
         // Asked of a rig that does not move: said, but no alarm.
