@@ -31,6 +31,7 @@ ASK_S = 10.0  # so long a connection may take to ask for something
 RESERVE = 64  # descriptors that are kept for stops and for what Python needs
 SWEEP_S = 0.25
 _REST_S = 0.02
+_END_S = 1.0  # for open channels to be closed
 _READ = 1 << 16
 _ACCEPTS = 64  # at once; then what has come is read
 _TOLD = 4096  # messages kept for a server that does not keep up
@@ -73,6 +74,10 @@ class Gate:
         await self._gone.wait()
         sweeping.cancel()
         await asyncio.gather(sweeping, *self._tasks, return_exceptions=True)
+        for connection in list(self._state.connections):
+            connection.shutdown()
+        if self._state.tasks:
+            await asyncio.wait(set(self._state.tasks), timeout=_END_S)
 
     # --- connections ---
 

@@ -14,6 +14,7 @@ from urllib.parse import urlsplit
 
 import httpx
 import pytest
+from websockets.exceptions import ConnectionClosed
 
 from tests.support.serving import running
 from tests.support.sockets import connect
@@ -114,6 +115,18 @@ def test_the_channel_outlives_a_server_that_hangs(served: Served) -> None:
             assert "no rig process runs" in json.loads(channel.recv(60.0))["done"]["unknown"]
         finally:
             os.kill(served.process.pid, signal.SIGCONT)
+
+
+def test_an_orderly_end_closes_the_channels_without_a_word(tmp_path: Path) -> None:
+    with running("serve", "--port", "0", "--data-dir", tmp_path) as (process, url):
+        with connect(f"ws{url[4:]}/api/v1/stop") as channel:
+            channel.send(json.dumps({"type": "ping", "t": 0}))
+            assert json.loads(channel.recv(60.0))["type"] == "pong"
+            process.send_signal(signal.SIGTERM)
+            with pytest.raises(ConnectionClosed):
+                channel.recv(60.0)
+        _, errors = process.communicate(timeout=60)
+    assert (process.returncode, errors) == (0, "")
 
 
 def test_a_gate_that_is_killed_or_hangs_is_started_anew(served: Served) -> None:
