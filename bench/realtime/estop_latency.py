@@ -10,7 +10,6 @@ the flag alone, from this process.
 import argparse
 import asyncio
 import contextlib
-import dataclasses
 import http.client
 import tempfile
 import threading
@@ -21,20 +20,19 @@ from pathlib import Path
 import numpy as np
 
 from bench.machine import machine
-from bench.realtime.operator import Operator, write_swing
-from bench.realtime.rig_load import Viewer, loaded, post, served
+from bench.realtime.operator import Operator, attached, write_swing
+from bench.realtime.rig_load import Viewer, loaded, served
 from fullpose.rig import builtin_rigs
-from fullpose_server.cli._event_loop import before_others
-from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.gate.system import SERVER, before_others
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 
 RIG = "vertical-4"
 
 
-def ask(port: int) -> None:
-    """Request the E-stop over HTTP, connecting included, and wait for the answer."""
+def ask(port: int, word: str = "estop") -> None:
+    """Request the E-stop, or a stop, over HTTP, connecting included, and wait for the answer."""
     link = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
-    link.request("POST", f"/api/v1/rigs/{RIG}/estop", b"")
+    link.request("POST", f"/api/v1/rigs/{RIG}/{word}", b"")
     answer = link.getresponse()
     body = answer.read()
     link.close()
@@ -79,7 +77,7 @@ async def stop_once(host: RigHost, plan: Path, over: Callable[[], None], sign: f
 
 
 def _asked(over: Callable[[], None]) -> int:
-    before_others()  # this thread, as the server: measured is that one, not who asks
+    before_others(SERVER)  # this thread, as the server: measured is that one, not who asks
     asked = time.monotonic_ns()
     over()
     return asked
@@ -100,12 +98,7 @@ async def measure(times: int, viewers: int) -> None:
         print(machine())
         print(f"{'request to first braking command [ms]':44s} {'p50':>8s} {'p99':>8s} {'max':>8s} {'times':>6s}")
         with served(root / "data") as (port, _):
-            status, body = post(port, f"/rigs/{RIG}/lease", {"action": "take"})
-            assert status == 200, body
-            (lock,) = (root / "data").rglob("rig.lock")
-            config = RigConfig(RIG, rig, root / "data", root / "data" / "runs")
-            host = RigHost(dataclasses.replace(config, directory=lock.parent))
-            await host.start()
+            host = await attached(port, root / "data", rig)
             for name, count in (("", 0), (f", {viewers} viewers, uploads, planning", viewers)):
                 span = 12.0 * times + 30.0
                 with loaded(port, RIG, count, span, upload=bool(count), plan=bool(count)):

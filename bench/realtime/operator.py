@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from bench.realtime.rig_load import post
 from fullpose.attitude import quaternion_from_dcm
 from fullpose.rig import Rig
 from fullpose.verify import payload_attitudes
 from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan, write_plan
+from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.messages import Reply
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.lease import LeaseToken
@@ -30,6 +32,15 @@ def write_swing(folder: Path, rig: Rig, seconds: float, rate_hz: float = 1000.0)
     plan = make_plan(PlanOrigin("bench", "0" * 64, "bench"), rig, rate_hz, path, feasible=True)
     write_plan(folder, plan)
     return folder
+
+
+async def attached(port: int, data: Path, rig: Rig) -> RigHost:
+    """The process of a built-in rig of the server at `port`, started by taking its lease, as a second host of it."""
+    status, body = post(port, f"/rigs/{rig.name}/lease", {"action": "take"})
+    assert status == 200, body
+    host = RigHost(RigConfig(rig.name, rig, data / "rigs" / rig.name, data / "runs"))
+    await host.start()
+    return host
 
 
 class Operator:

@@ -12,40 +12,39 @@ A normal viewer's largest gaps between frames, the server's memory and what the 
 import argparse
 import asyncio
 import contextlib
-import dataclasses
 import http.client
 import json
 import os
+import socket
 import subprocess
 import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import numpy as np
 from websockets.sync.client import connect
 
 from bench.machine import machine
 from bench.realtime.attacks import NAMES
-from bench.realtime.operator import Operator, write_swing
-from bench.realtime.rig_load import Viewer, post, served
+from bench.realtime.estop_latency import RIG, ask, row
+from bench.realtime.operator import Operator, attached, write_swing
+from bench.realtime.rig_load import Viewer, served
 from fullpose.rig import builtin_rigs
-from fullpose_server.cli._event_loop import before_others
-from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.gate.system import SERVER, before_others
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 
-RIG = "vertical-4"
 FILES = 1024
+Asking = Callable[[str], None]  # to stop or to E-stop
 DISK_BYTES = 64_000_000
 _BARE = """
 import asyncio, uvicorn
-from fullpose_server.cli._event_loop import before_others
+from fullpose_server.gate.system import SERVER, before_others
 async def app(scope, receive, send):
     await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"2")]})
     await send({"type": "http.response.body", "body": b"ok"})
-before_others()
+before_others(SERVER)
 uvicorn.run(app, port=%d, log_level="error", lifespan="off")
 """
 
@@ -59,12 +58,7 @@ class Ways:
 
     def http(self, word: str) -> None:
         """A connection of its own."""
-        link = http.client.HTTPConnection("127.0.0.1", self._port, timeout=10)
-        link.request("POST", f"/api/v1/rigs/{RIG}/{word}", b"")
-        answer = link.getresponse()
-        body = answer.read()
-        link.close()
-        assert answer.status == 200, body
+        ask(self._port, word)
 
     def channel(self, word: str) -> None:
         """The stop channel, open all the time."""
@@ -103,12 +97,12 @@ class Gaps:
                 last = now
 
 
-async def stop_once(host: RigHost, operator: Operator, ask: object, word: str, sign: float) -> tuple[float, float]:
+async def stop_once(host: RigHost, operator: Operator, over: Asking, word: str, sign: float) -> tuple[float, float]:
     """Milliseconds to the first braking command and to the answer, in the middle of a move."""
     pose = host.snapshot().pose_deg
     await operator.must("move", target_deg=[v + sign * 300.0 for v in pose])
     await asyncio.sleep(0.3)
-    asked, answered = await asyncio.to_thread(_asked, ask, word)
+    asked, answered = await asyncio.to_thread(_asked, over, word)
     await operator.until("estopped" if word == "estop" else "armed")
     wrote = int(host.memory.header[f"{word}_wrote_ns"][0])
     assert wrote >= asked, "the rig was not moving"
@@ -118,18 +112,18 @@ async def stop_once(host: RigHost, operator: Operator, ask: object, word: str, s
     return (wrote - asked) / 1e6, (answered - asked) / 1e6
 
 
-def _asked(ask: object, word: str) -> tuple[int, int]:
-    before_others()  # this thread: measured is the server, not who asks
+def _asked(over: Asking, word: str) -> tuple[int, int]:
+    before_others(SERVER)  # this thread: measured is the server, not who asks
     asked = time.monotonic_ns()
-    ask(word)  # type: ignore[operator]
+    over(word)
     return asked, time.monotonic_ns()
 
 
-def timed(work: object) -> float:
+def timed(work: Callable[[], None]) -> float:
     """Milliseconds that it takes."""
-    before_others()
+    before_others(SERVER)
     begun = time.monotonic_ns()
-    work()  # type: ignore[operator]
+    work()
     return (time.monotonic_ns() - begun) / 1e6
 
 
@@ -153,8 +147,6 @@ def attacked(name: str, port: int, data: Path) -> Iterator[None]:
 @contextlib.contextmanager
 def bare_server() -> Iterator[int]:
     """A bare uvicorn; its port."""
-    import socket
-
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     process = subprocess.Popen([sys.executable, "-c", _BARE % port])
@@ -175,28 +167,17 @@ def memory_mb(pid: int) -> float:
     return int(status.split("VmHWM:")[1].split()[0]) / 1024.0
 
 
-def row(name: str, values: list[float]) -> str:
-    """One line of the table."""
-    p50, p99 = np.percentile(values, [50, 99])
-    return f"{name:40s} {p50:8.2f} {p99:8.2f} {max(values):8.2f} {len(values):6d}"
-
-
 async def measure(attack: str, times: int, root: Path) -> None:
     """One attack's rows."""
     rig = builtin_rigs()[RIG]
     plan = write_swing(Path(tempfile.mkdtemp()) / "plan", rig, 1.0)
     with served(root / "data", files=FILES) as (port, pid), bare_server() as bare:
-        status, body = post(port, f"/rigs/{RIG}/lease", {"action": "take"})
-        assert status == 200, body
-        (lock,) = (root / "data").rglob("rig.lock")
-        config = RigConfig(RIG, rig, root / "data", root / "data" / "runs")
-        host = RigHost(dataclasses.replace(config, directory=lock.parent))
-        await host.start()
+        host = await attached(port, root / "data", rig)
         ways, gaps = Ways(port, bare), Gaps(port)
         await asyncio.sleep(1.0)
         gaps.found.clear()
         with attacked(attack, port, root / "data"):
-            for way, ask in (("HTTP", ways.http), ("channel", ways.channel)):
+            for way, over in (("HTTP", ways.http), ("channel", ways.channel)):
                 for word in ("stop", "estop"):
                     operator = Operator(host)
                     await operator.take()
@@ -207,7 +188,7 @@ async def measure(attack: str, times: int, root: Path) -> None:
                     for k in range(times):
                         if host.snapshot().state != "armed":
                             await operator.arm(plan_folder=str(plan))
-                        found.append(await stop_once(host, operator, ask, word, (-1.0) ** k))
+                        found.append(await stop_once(host, operator, over, word, (-1.0) ** k))
                         beside.append(await asyncio.to_thread(timed, ways.bare))
                     print(row(f"{attack}: {word} {way}, braking", [one[0] for one in found]))
                     print(row(f"{attack}: {word} {way}, answer", [one[1] for one in found]), flush=True)

@@ -12,10 +12,9 @@ from fullpose_server.api import errors, openapi
 from fullpose_server.api import uploads as uploading
 from fullpose_server.api.body_limit import BodyLimit
 from fullpose_server.api.console import console
-from fullpose_server.api.errors import problem_response
 from fullpose_server.api.origin import OriginGuard
 from fullpose_server.api.paths import API
-from fullpose_server.api.problems import ApiError
+from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.api.routes import (
     audit,
     compare,

@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from fullpose_server.api.errors import BodyError, problem_response
-from fullpose_server.api.problems import ApiError
+from fullpose_server.api.errors import BodyError
+from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.settings import Settings
 
 

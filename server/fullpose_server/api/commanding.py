@@ -1,16 +1,14 @@
 """What every way to command a session shares: the priority channel of stop and E-stop, and the audit that follows."""
 
-import time
 from collections.abc import Coroutine
 from typing import Any
 
 from fullpose_server.api.deps import Services
 from fullpose_server.api.schemas.session import LeaseToken
-from fullpose_server.api.stopping import NOTHING_RUNS
+from fullpose_server.api.stopping import NOTHING_RUNS, audit_entry
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.session.errors import IllegalCommandError
 from fullpose_server.session.states import Command, State
-from fullpose_server.store.audit import AuditEntry
 
 
 def by_priority(services: Services, rig: str, command: Command, who: str) -> Coroutine[Any, Any, Reply]:
@@ -43,17 +41,5 @@ def audit(
     reply: Reply,
 ) -> None:
     """Have written down who commanded what, and what came of it; nobody waits for that."""
-    error = reply.error
-    services.trail.follow(
-        AuditEntry(
-            at=time.time(),
-            who=who,
-            rig=rig,
-            command=word,
-            args=args,
-            lease=None if token is None else (token.epoch, token.sequence),
-            states=(reply.state_before, reply.state_after),
-            accepted=reply.ok,
-            detail=reply.unknown if error is None else f"{error.code}: {error.message}",
-        )
-    )
+    lease = None if token is None else (token.epoch, token.sequence)
+    services.trail.follow(audit_entry(rig, who, word, reply, args, lease))

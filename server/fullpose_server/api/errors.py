@@ -2,7 +2,6 @@
 
 import errno
 import logging
-from collections.abc import Mapping
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -12,7 +11,7 @@ from starlette.responses import Response
 from starlette.routing import Match, Mount
 
 from fullpose.errors import SolverError
-from fullpose_server.api.problems import MEDIA_TYPE, ApiError, validation_problem
+from fullpose_server.api.problems import ApiError, problem_response, validation_problem
 from fullpose_server.api.schemas.base import FieldProblem, Problem
 from fullpose_server.errors import (
     DamagedError,
@@ -25,7 +24,6 @@ from fullpose_server.errors import (
 from fullpose_server.formats.importers.columns import TooLargeError
 
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
-RETRY_S = 5  # what a client is told to wait where the server has too much to do, or no room
 log = logging.getLogger(__name__)
 
 
@@ -64,18 +62,6 @@ def problem_of(error: Exception) -> Problem:
         case _:
             log.error("unexpected error", exc_info=error)
             return ApiError(500, "internal", "an error of the server; its log tells more").problem
-
-
-def problem_response(
-    problem: Problem, request: Request | None = None, headers: Mapping[str, str] | None = None
-) -> Response:
-    """The HTTP answer of a problem."""
-    if request is not None:
-        problem = problem.model_copy(update={"instance": request.url.path})
-    told = {"Retry-After": str(RETRY_S)} if problem.status in (429, 503, 507) else {}
-    return Response(
-        problem.model_dump_json(exclude_none=True), problem.status, {**told, **(headers or {})}, media_type=MEDIA_TYPE
-    )
 
 
 def install(app: FastAPI) -> None:

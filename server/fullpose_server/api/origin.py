@@ -12,9 +12,8 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from fullpose_server.api.errors import problem_response
-from fullpose_server.api.paths import API, STOP_CHANNEL
-from fullpose_server.api.problems import ApiError
+from fullpose_server.api.paths import API, STOP_CHANNEL, of_rig
+from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.session.states import NEEDS_NO_LEASE
 from fullpose_server.settings import Settings, is_loopback
 
@@ -68,7 +67,8 @@ def is_stop(scope: Scope) -> bool:
     path = str(scope["path"])
     if scope["type"] == "websocket":
         return path == f"{API}{STOP_CHANNEL}"
-    return path.startswith(f"{API}/rigs/") and path.rsplit("/", 1)[1] in NEEDS_NO_LEASE and scope["method"] == "POST"
+    target = of_rig(path) if scope["method"] == "POST" else None
+    return target is not None and target[1] in NEEDS_NO_LEASE
 
 
 def _is_address(name: str) -> bool:

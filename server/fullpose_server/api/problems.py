@@ -1,13 +1,17 @@
 """The API's own errors and their problem documents (RFC 9457); light: the stop gate has them too."""
 
 import reprlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
+
+from starlette.requests import Request
+from starlette.responses import Response
 
 from fullpose_server.api.schemas.base import FieldProblem, Problem
 
 MEDIA_TYPE = "application/problem+json"
+RETRY_S = 5  # what a client is told to wait where the server has too much to do, or no room
 LONGEST = 2000  # characters of a detail
 _ABRIDGING = reprlib.Repr()  # never the whole of a large value
 _ABRIDGING.maxstring = _ABRIDGING.maxother = _ABRIDGING.maxlong = 120
@@ -64,6 +68,18 @@ def plain(text: str, longest: int) -> str:
     """Text that an answer may carry whatever a client has sent: not longer, and without halves of characters."""
     text = text if len(text) <= longest else text[: longest - 3] + "..."
     return text.encode("utf-8", "backslashreplace").decode()
+
+
+def problem_response(
+    problem: Problem, request: Request | None = None, headers: Mapping[str, str] | None = None
+) -> Response:
+    """The HTTP answer of a problem."""
+    if request is not None:
+        problem = problem.model_copy(update={"instance": request.url.path})
+    told = {"Retry-After": str(RETRY_S)} if problem.status in (429, 503, 507) else {}
+    return Response(
+        problem.model_dump_json(exclude_none=True), problem.status, {**told, **(headers or {})}, media_type=MEDIA_TYPE
+    )
 
 
 def _abridged(value: object) -> str | None:

@@ -2,8 +2,7 @@
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from fullpose_server.api.errors import problem_response
-from fullpose_server.api.problems import ApiError
+from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.settings import Settings
 
 TOO_LARGE = 1009  # close code of a message that is

@@ -1,6 +1,7 @@
 """Stop and E-stop on the wire, alike in the server and in the stop gate: who asks, and the answer. No web framework."""
 
 import re
+import time
 from typing import Any
 
 from fullpose_server.api.problems import ApiError
@@ -8,6 +9,7 @@ from fullpose_server.api.schemas.base import CLIENT_NAME
 from fullpose_server.api.schemas.session import CommandOut
 from fullpose_server.runtime.contract.messages import Reply
 from fullpose_server.session.states import STOP_CATEGORY, State
+from fullpose_server.store.audit_entry import AuditEntry
 
 # Codes of the session's refusals that are not about its state.
 _STATUS = {"lease_needed": 403, "lease_lost": 403, "rig_unreachable": 503}
@@ -61,4 +63,27 @@ def refusal(reply: Reply) -> ApiError:
         state=error.state,
         command=error.command,
         allowed=error.allowed,
+    )
+
+
+def audit_entry(
+    rig: str,
+    who: str,
+    word: str,
+    reply: Reply,
+    args: dict[str, Any] | None = None,
+    lease: tuple[int, int] | None = None,
+) -> AuditEntry:
+    """Who commanded what, and what came of it, as of now; `lease` is (epoch, sequence)."""
+    error = reply.error
+    return AuditEntry(
+        at=time.time(),
+        who=who,
+        rig=rig,
+        command=word,
+        args=args or {},
+        lease=lease,
+        states=(reply.state_before, reply.state_after),
+        accepted=reply.ok,
+        detail=reply.unknown if error is None else f"{error.code}: {error.message}",
     )

@@ -3,7 +3,6 @@
 import asyncio
 import contextlib
 import gc
-import os
 import signal
 import socket
 import sys
@@ -17,9 +16,9 @@ from fullpose_server.api.deps import Services
 from fullpose_server.app import create_app
 from fullpose_server.cli._exit import CommandError, fail
 from fullpose_server.errors import ServerError
-from fullpose_server.gate.files import files
-from fullpose_server.gate.keeper import Backend, GateProcess, Keeper
-from fullpose_server.gate.served import served_by
+from fullpose_server.gate.keeper import GateProcess, Keeper
+from fullpose_server.gate.served import Connections, served_by
+from fullpose_server.gate.system import SERVER, before_others, files
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.scene.scenes import prewarm
 from fullpose_server.settings import Settings
@@ -30,13 +29,12 @@ PREWARM_AFTER_S = 0.5
 # send. Python's own 5 ms are half of what an E-stop may take.
 SWITCH_S = 0.0001
 FILES_KEPT = 192  # of those this process may have open: for its own, and three pipes or so a rig
-PRIORITY = 1  # of 99; a rig's loop has 60
 
 
 def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
     """Serve on `listener` until SIGINT or SIGTERM; the address is the first line of stdout."""
     sys.setswitchinterval(SWITCH_S)
-    before_others()
+    before_others(SERVER)
     try:
         with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
             runner.run(_run(settings, listener, url, ready))
@@ -44,16 +42,6 @@ def serve(settings: Settings, listener: socket.socket, url: str, ready: Ready) -
         fail(str(error))
     except (HostError, CommandError) as error:
         fail(str(error), 1)
-
-
-def before_others() -> None:
-    """Run this thread before all that is not real-time, where the system lets us, and after the rigs' loops.
-
-    What it starts, threads and processes, does not inherit it. A nice value would not do: Linux weighs it inside a
-    session only.
-    """
-    with contextlib.suppress(PermissionError):
-        os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
 
 
 def _prewarm() -> None:
@@ -72,8 +60,8 @@ async def _run(settings: Settings, listener: socket.socket, url: str, ready: Rea
         async with app.router.lifespan_context(app):
             server = _Server(config)
             services: Services = app.state.services
-            backend = Backend(config, server.server_state, min(settings.max_connections, files() - FILES_KEPT))
-            keeper = Keeper(listener, gate, backend, services.hosts.running, services.trail, services.front)
+            served, most = Connections(config, server.server_state), min(settings.max_connections, files() - FILES_KEPT)
+            keeper = Keeper(listener, gate, served, most, services.hosts.running, services.trail, services.front)
             serving = asyncio.create_task(server.serve(sockets=[]))  # none of its own: the gate has it
             sys.stdout.write(f"{url}\n")
             sys.stdout.flush()

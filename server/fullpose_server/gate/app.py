@@ -11,7 +11,7 @@ from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from fullpose_server.api.paths import API, STOP_CHANNEL
-from fullpose_server.api.problems import MEDIA_TYPE, ApiError
+from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.api.stopping import CLIENT_HEADER, answer, status_of, who_stops
 from fullpose_server.api.streams.stop_channel import StopChannel
 from fullpose_server.gate.rigs import Rigs
@@ -59,8 +59,7 @@ class _Stop:
             done = answer(word, await self._rigs.stop(request.path_params["rig"], Command(word), who))
             response = Response(done.model_dump_json(), status_of(done), media_type="application/json")
         except ApiError as error:
-            told = error.problem.model_copy(update={"instance": request.url.path})
-            response = Response(told.model_dump_json(exclude_none=True), told.status, media_type=MEDIA_TYPE)
+            response = problem_response(error.problem, request)
         await _send_then_linger(response, request, send)
 
 

@@ -6,12 +6,12 @@ from urllib.parse import unquote
 import httptools
 import msgspec
 
-from fullpose_server.api.paths import API, STOP_CHANNEL
+from fullpose_server.api.paths import API, STOP_CHANNEL, of_rig
 from fullpose_server.session.states import NEEDS_NO_LEASE
 
 MAX_HEAD = 1 << 16  # [bytes] of a longer one the server may think what it likes
 MAX_BODY = 1 << 16  # [bytes] of a command; no stop needs as much
-_RIGS, _CHANNEL = f"{API}/rigs/", f"{API}{STOP_CHANNEL}"
+_CHANNEL = f"{API}{STOP_CHANNEL}"
 
 
 @dataclass(frozen=True)
@@ -74,12 +74,14 @@ class FirstRequest:
         if method == b"GET" and path == _CHANNEL and self._parser.should_upgrade():
             self._wanted = StopOf(None)
             return
-        self._rig, _, last = path.removeprefix(_RIGS).partition("/")
-        if method != b"POST" or not path.startswith(_RIGS):
+        target = of_rig(path) if method == b"POST" else None
+        if target is None:
             self._wanted = Rest()
-        elif last in NEEDS_NO_LEASE:
+            return
+        self._rig, word = target
+        if word in NEEDS_NO_LEASE:
             self._wanted = StopOf(self._rig)
-        elif last != "commands":
+        elif word != "commands":
             self._wanted = Rest()
 
     def on_body(self, data: bytes) -> None:

@@ -8,17 +8,12 @@ import subprocess
 import sys
 import time
 from dataclasses import dataclass
-from typing import Any
-
-import uvicorn
-from uvicorn.server import ServerState
 
 from fullpose_server.api.front import FrontStatus
 from fullpose_server.api.problems import MEDIA_TYPE, ApiError
 from fullpose_server.gate import messages
-from fullpose_server.gate.served import Served
+from fullpose_server.gate.served import Connections
 from fullpose_server.runtime.supervisor.running import RunningProcess, RunningProcesses
-from fullpose_server.store.audit import AuditEntry
 from fullpose_server.store.audit_trail import AuditTrail
 
 RETRY_S = 0.5
@@ -60,35 +55,30 @@ class GateProcess:
             self.process.wait()
 
 
-@dataclass(frozen=True)
-class Backend:
-    """What serves the connections that the gate passes on: at most `most` at once."""
-
-    config: uvicorn.Config
-    state: ServerState
-    most: int
-
-
 class Keeper:
-    """Of one server's gate, from construction until `close`. Everything belongs to the event loop's thread."""
+    """Of one server's gate, from construction until `close`; at most `most` connections are served at once.
+
+    Everything belongs to the event loop's thread.
+    """
 
     def __init__(
         self,
         listener: socket.socket,
         gate: GateProcess,
-        backend: Backend,
+        served: Connections,
+        most: int,
         running: RunningProcesses,
         trail: AuditTrail,
         status: FrontStatus,
     ) -> None:
         self._listener = listener
-        self._backend = backend
+        self._served = served
+        self._most = most
         self._running = running
         self._trail = trail
         self._status = status
         self._loop = asyncio.get_running_loop()
         self._ending = False
-        self._serving = set[asyncio.Task[Any]]()
         self._gate = gate
         self._heard = time.monotonic()
         running.watch(self._changed)
@@ -159,8 +149,8 @@ class Keeper:
                 message = messages.for_server(gate.link)
             except BlockingIOError:
                 return
-            except messages.NoDescriptorError:
-                self._status.refused += 1
+            except messages.NoDescriptorError as lost:
+                log.warning("%s", lost)
                 continue
             except OSError:
                 message = None
@@ -168,47 +158,21 @@ class Keeper:
             match message:
                 case messages.Passed():
                     self._serve(message)
-                case messages.Stopped():
-                    self._trail.follow(_entry(message))
-                case messages.Waiting(connections, dropped):
-                    self._status.waiting, self._status.dropped = connections, dropped
+                case messages.Stopped(entry):
+                    self._trail.follow(entry)
+                case messages.Alive():
+                    pass
                 case None:
                     self._lost("it has ended")
                     return
 
     def _serve(self, passed: messages.Passed) -> None:
-        backend = self._backend
-        if len(backend.state.connections) + len(self._serving) >= backend.most:
-            self._status.refused += 1
-            with passed.socket, contextlib.suppress(OSError):
-                passed.socket.setblocking(False)
-                passed.socket.send(_FULL)
+        if len(self._served) < self._most:
+            self._served.serve(passed.socket, passed.data)
             return
-        passed.socket.setblocking(False)
-        begun = passed.data
-        made = self._loop.connect_accepted_socket(lambda: Served(begun, backend.config, backend.state), passed.socket)
-        task = asyncio.ensure_future(made)
-        self._serving.add(task)
-        task.add_done_callback(self._served)
-
-    def _served(self, task: "asyncio.Task[Any]") -> None:
-        self._serving.discard(task)
-        if not task.cancelled() and task.exception() is not None:
-            log.debug("a connection ended before it was served: %s", task.exception())
-
-
-def _entry(told: messages.Stopped) -> AuditEntry:
-    return AuditEntry(
-        at=told.at,
-        who=told.who,
-        rig=told.rig,
-        command=told.command,
-        args={},
-        lease=None,
-        states=told.states,
-        accepted=told.accepted,
-        detail=told.detail,
-    )
+        with passed.socket, contextlib.suppress(OSError):
+            passed.socket.setblocking(False)
+            passed.socket.send(_FULL)
 
 
 def _full() -> bytes:

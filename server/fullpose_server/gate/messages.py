@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import msgspec
 
+from fullpose_server.store.audit_entry import AuditEntry
+
 CONNECTION, MESSAGE = b"C", b"M"
 MAX_PACKET = 1 << 18  # [bytes] more than a first request may have
 
@@ -28,32 +30,26 @@ class Ending(msgspec.Struct, tag=True, frozen=True):
 
 
 class Stopped(msgspec.Struct, tag=True, frozen=True):
-    """Gate to server, for the audit: who stopped what, and what came of it."""
+    """Gate to server: for the audit."""
 
-    at: float  # [s] since the epoch
-    who: str
-    rig: str
-    command: str
-    states: tuple[str, str]
-    accepted: bool
-    detail: str | None
+    entry: AuditEntry
 
 
-class Waiting(msgspec.Struct, tag=True, frozen=True):
-    """Gate to server, for health: connections that have not asked yet, and those dropped for not asking."""
-
-    connections: int
-    dropped: int
+class Alive(msgspec.Struct, tag=True, frozen=True):
+    """Gate to server: nothing else to say."""
 
 
 ToGate = RigRuns | RigLeft | Ending
-ToServer = Stopped | Waiting
+ToServer = Stopped | Alive
 _to_gate = msgspec.json.Decoder(ToGate).decode
 _to_server = msgspec.json.Decoder(ToServer).decode
 
 
 class NoDescriptorError(Exception):
     """This process may have no more files: a connection that was passed on is lost."""
+
+    def __init__(self) -> None:
+        super().__init__("no descriptor left for a connection that the gate passed on: it is lost")
 
 
 @dataclass(frozen=True)

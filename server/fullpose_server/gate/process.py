@@ -8,25 +8,22 @@ import argparse
 import asyncio
 import contextlib
 import logging
-import os
 import signal
 import socket
 import time
 from collections import OrderedDict, deque
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from uvicorn.server import ServerState
 
 from fullpose_server.gate import messages
 from fullpose_server.gate.app import create_app
-from fullpose_server.gate.files import files
 from fullpose_server.gate.first_request import FirstRequest, StopOf
 from fullpose_server.gate.rigs import Rigs
-from fullpose_server.gate.served import Served, served_by
+from fullpose_server.gate.served import Connections, served_by
+from fullpose_server.gate.system import GATE, before_others, files
 
-PRIORITY = 2  # of 99; the server's own is 1, a rig's loop has 60
 ASK_S = 10.0  # so long a connection may take to ask for something
 RESERVE = 64  # descriptors that are kept for stops and for what Python needs
 SWEEP_S = 0.25
@@ -58,13 +55,11 @@ class Gate:
         self._waiting: OrderedDict[int, Waiting] = OrderedDict()  # by descriptor, the oldest first
         self._asked: deque[Waiting] = deque()  # for a server that does not keep up
         self._told: deque[messages.ToServer] = deque(maxlen=_TOLD)
-        self._dropped = 0
         self._ending = False
         self._gone = asyncio.Event()
-        self._rigs = Rigs(self._tell)
-        self._state = ServerState()
-        self._config = served_by(create_app(self._rigs), ws_max_size=messages.MAX_PACKET)
-        self._tasks = set[asyncio.Task[Any]]()
+        self._rigs = Rigs(lambda entry: self._tell(messages.Stopped(entry)))
+        config = served_by(create_app(self._rigs), ws_max_size=messages.MAX_PACKET)
+        self._served = Connections(config, ServerState())
 
     async def run(self) -> None:
         """Until the server is gone."""
@@ -73,11 +68,8 @@ class Gate:
         sweeping = asyncio.create_task(self._sweep(), name="sweep")
         await self._gone.wait()
         sweeping.cancel()
-        await asyncio.gather(sweeping, *self._tasks, return_exceptions=True)
-        for connection in list(self._state.connections):
-            connection.shutdown()
-        if self._state.tasks:
-            await asyncio.wait(set(self._state.tasks), timeout=_END_S)
+        await asyncio.gather(sweeping, return_exceptions=True)
+        await self._served.close(_END_S)
 
     # --- connections ---
 
@@ -97,7 +89,7 @@ class Gate:
                 connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self._waiting[connection.fileno()] = Waiting(connection, time.monotonic())
             self._loop.add_reader(connection.fileno(), self._read, connection.fileno())
-            if len(self._waiting) + len(self._asked) + len(self._state.connections) > self._most:
+            if len(self._waiting) + len(self._asked) + len(self._served) > self._most:
                 self._drop_oldest()
 
     def _rest(self) -> None:
@@ -115,7 +107,6 @@ class Gate:
         else:
             return False
         oldest.socket.close()
-        self._dropped += 1
         return True
 
     def _read(self, descriptor: int) -> None:
@@ -133,20 +124,13 @@ class Gate:
         self._loop.remove_reader(descriptor)
         if wanted is None or (self._ending and not isinstance(wanted, StopOf)):
             one.socket.close()
-        elif wanted == StopOf(None) and len(self._state.connections) > self._most // 2:
+        elif wanted == StopOf(None) and len(self._served) > self._most // 2:
             one.socket.close()  # channels may not take what a single stop needs
         elif isinstance(wanted, StopOf) and (wanted.rig is None or wanted.rig in self._rigs):
-            self._serve(one)
+            self._served.serve(one.socket, bytes(one.request.data))
         else:
             self._asked.append(one)
             self._flush()
-
-    def _serve(self, one: Waiting) -> None:
-        begun = bytes(one.request.data)
-        made = self._loop.connect_accepted_socket(lambda: Served(begun, self._config, self._state), one.socket)
-        task = asyncio.ensure_future(made)
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
 
     async def _sweep(self) -> None:
         while True:
@@ -154,8 +138,8 @@ class Gate:
             latest = time.monotonic() - ASK_S
             while self._waiting and next(iter(self._waiting.values())).since < latest:
                 self._drop_oldest()
-            if not self._told:  # also a sign of life
-                self._tell(messages.Waiting(len(self._waiting), self._dropped))
+            if not self._told:  # which are signs of life too
+                self._tell(messages.Alive())
 
     # --- the server ---
 
@@ -210,8 +194,7 @@ def main() -> None:
     logging.basicConfig(format="%(asctime)s %(name)s %(message)s", level=logging.WARNING)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)  # a rig that brakes while the server ends can still be stopped
-    with contextlib.suppress(PermissionError):
-        os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
+    before_others(GATE)
     listener, link = socket.socket(fileno=given.listener), socket.socket(fileno=given.link)
     listener.setblocking(False)
 

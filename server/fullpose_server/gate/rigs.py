@@ -3,17 +3,16 @@
 import asyncio
 import contextlib
 import os
-import time
 from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any
 
-from fullpose_server.api.stopping import NOTHING_RUNS
-from fullpose_server.gate.messages import Stopped
+from fullpose_server.api.stopping import NOTHING_RUNS, audit_entry
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.supervisor.priority_channel import PriorityChannel
 from fullpose_server.session.states import Command, State
+from fullpose_server.store.audit_entry import AuditEntry
 
 
 class RunningRig:
@@ -54,7 +53,7 @@ class RunningRig:
 class Rigs:
     """By name. `audit` is told of every stop, after its answer is known."""
 
-    def __init__(self, audit: Callable[[Stopped], None]) -> None:
+    def __init__(self, audit: Callable[[AuditEntry], None]) -> None:
         self._audit = audit
         self._running: dict[str, RunningRig] = {}
 
@@ -81,10 +80,7 @@ class Rigs:
 
         async def replied() -> messages.Reply:
             reply = NOTHING_RUNS if done is None else await done
-            error = reply.error
-            detail = reply.unknown if error is None else f"{error.code}: {error.message}"
-            states = (reply.state_before, reply.state_after)
-            self._audit(Stopped(time.time(), who, rig, command, states, reply.ok, detail))
+            self._audit(audit_entry(rig, who, command, reply))
             return reply
 
         return replied()

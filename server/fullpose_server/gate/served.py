@@ -1,12 +1,16 @@
 """How an app is served on connections that were accepted elsewhere: one request each, for the next may be a stop."""
 
 import asyncio
+import logging
+import socket
 from typing import Any
 
 import uvicorn
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
+
+log = logging.getLogger(__name__)
 
 
 class Served(HttpToolsProtocol):
@@ -20,6 +24,40 @@ class Served(HttpToolsProtocol):
         """Go on from what was read."""
         super().connection_made(transport)
         self.data_received(self._begun)
+
+
+class Connections:
+    """The connections that an app is served on, one after another given to `serve`."""
+
+    def __init__(self, config: uvicorn.Config, state: ServerState) -> None:
+        self._config = config
+        self._state = state
+        self._beginning = set[asyncio.Task[Any]]()
+
+    def __len__(self) -> int:
+        return len(self._state.connections) + len(self._beginning)
+
+    def serve(self, connection: socket.socket, begun: bytes) -> None:
+        """Serve the app on this one, of which `begun` has been read."""
+        connection.setblocking(False)
+        loop = asyncio.get_running_loop()
+        made = loop.connect_accepted_socket(lambda: Served(begun, self._config, self._state), connection)
+        task = asyncio.ensure_future(made)
+        self._beginning.add(task)
+        task.add_done_callback(self._has_begun)
+
+    async def close(self, longest_s: float) -> None:
+        """Close them all; what is being answered has so long."""
+        await asyncio.gather(*self._beginning, return_exceptions=True)
+        for connection in list(self._state.connections):
+            connection.shutdown()
+        if self._state.tasks:
+            await asyncio.wait(set(self._state.tasks), timeout=longest_s)
+
+    def _has_begun(self, task: "asyncio.Task[Any]") -> None:
+        self._beginning.discard(task)
+        if not task.cancelled() and task.exception() is not None:
+            log.debug("a connection ended before it was served: %s", task.exception())
 
 
 class OneRequest:

@@ -1,27 +1,10 @@
 """The audit log: every command, accepted or refused, with who, lease, state before and after."""
 
-from dataclasses import dataclass
-from typing import Any
-
 from sqlalchemy import select
 
+from fullpose_server.store.audit_entry import AuditEntry
 from fullpose_server.store.database import Database
 from fullpose_server.store.tables import AuditRow
-
-
-@dataclass(frozen=True)
-class AuditEntry:
-    """One line: `lease` is (epoch, sequence), `states` before and after, `at` [s] since the epoch."""
-
-    at: float
-    who: str
-    rig: str
-    command: str
-    args: dict[str, Any]
-    lease: tuple[int, int] | None
-    states: tuple[str, str]
-    accepted: bool
-    detail: str | None
 
 
 class AuditLog:

@@ -7,7 +7,8 @@ from collections import deque
 from sqlalchemy.exc import SQLAlchemyError
 
 from fullpose_server.errors import ServerError
-from fullpose_server.store.audit import AuditEntry, AuditLog
+from fullpose_server.store.audit import AuditLog
+from fullpose_server.store.audit_entry import AuditEntry
 
 MOST = 10_000
 RETRY_S = 0.5

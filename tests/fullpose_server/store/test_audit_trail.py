@@ -3,7 +3,8 @@
 import sqlite3
 from pathlib import Path
 
-from fullpose_server.store.audit import AuditEntry, AuditLog
+from fullpose_server.store.audit import AuditLog
+from fullpose_server.store.audit_entry import AuditEntry
 from fullpose_server.store.audit_trail import MOST, AuditTrail
 from fullpose_server.store.database import Database
 from tests.support.waiting import until

@@ -2686,8 +2686,8 @@ export interface components {
             command: "stop";
             lease?: components["schemas"]["LeaseToken"] | null;
         };
-        StopMessageIn: components["schemas"]["StopRig"] | components["schemas"]["StopPing"];
-        StopMessageOut: components["schemas"]["RigStopped"] | components["schemas"]["StopPong"] | components["schemas"]["StopRefused"];
+        StopMessageIn: components["schemas"]["StopRig"] | components["schemas"]["Ping"];
+        StopMessageOut: components["schemas"]["RigStopped"] | components["schemas"]["Pong"] | components["schemas"]["StopRefused"];
         /**
          * StopNow
          * @description Live only: the priority channel of stop and E-stop, as POST /rigs/{rig}/stop and /estop. No lease; at once.
@@ -2733,31 +2733,6 @@ export interface components {
              * @default null
              */
             unknown: string | null;
-        };
-        /**
-         * StopPing
-         * @description Answered at once: the round trip of a stop, but for the rig's own tick.
-         */
-        StopPing: {
-            /** T */
-            t: number;
-            /**
-             * @description discriminator enum property added by openapi-typescript
-             * @enum {string}
-             */
-            type: "ping";
-        };
-        /** StopPong */
-        StopPong: {
-            /** Server Time */
-            server_time: number;
-            /** T */
-            t: number;
-            /**
-             * @description discriminator enum property added by openapi-typescript
-             * @enum {string}
-             */
-            type: "pong";
         };
         /**
          * StopRefused

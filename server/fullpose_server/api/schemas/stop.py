@@ -7,10 +7,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from fullpose_server.api.schemas.base import Problem, Wire
+from fullpose_server.api.schemas.base import Ordinal, Problem, Wire
 from fullpose_server.api.schemas.session import CommandOut
+from fullpose_server.api.schemas.stream import Ping, Pong
 
-AskNumber = Annotated[int, Field(ge=0, lt=2**53)]
+AskNumber = Annotated[Ordinal, Field(lt=2**53)]
 
 
 class StopRig(Wire):
@@ -22,14 +23,7 @@ class StopRig(Wire):
     id: AskNumber = Field(default=0, description="Told again in the answer")
 
 
-class StopPing(Wire):
-    """Answered at once: the round trip of a stop, but for the rig's own tick."""
-
-    type: Literal["ping"]
-    t: float
-
-
-StopIn = Annotated[StopRig | StopPing, Field(discriminator="type")]
+StopIn = Annotated[StopRig | Ping, Field(discriminator="type")]
 
 
 class RigStopped(Wire):
@@ -41,12 +35,6 @@ class RigStopped(Wire):
     done: CommandOut
 
 
-class StopPong(Wire):
-    type: Literal["pong"] = "pong"
-    t: float
-    server_time: float
-
-
 class StopRefused(Wire):
     """The message was none, or the session's state knows no such command."""
 
@@ -55,5 +43,5 @@ class StopRefused(Wire):
     problem: Problem
 
 
-STOP_IN = (StopRig, StopPing)
-STOP_OUT = (RigStopped, StopPong, StopRefused)
+STOP_IN = (StopRig, Ping)
+STOP_OUT = (RigStopped, Pong, StopRefused)

@@ -9,7 +9,8 @@ from starlette.websockets import WebSocket
 
 from fullpose_server.api.problems import ApiError, validation_problem
 from fullpose_server.api.schemas.base import Problem, Wire
-from fullpose_server.api.schemas.stop import RigStopped, StopIn, StopPing, StopPong, StopRefused, StopRig
+from fullpose_server.api.schemas.stop import RigStopped, StopIn, StopRefused, StopRig
+from fullpose_server.api.schemas.stream import Ping, Pong
 from fullpose_server.api.stopping import answer, who_stops
 from fullpose_server.api.streams.tasks import NOT_TEXT, Tasks, close_for, send_text
 from fullpose_server.runtime.contract.messages import Reply
@@ -48,8 +49,8 @@ class StopChannel:
         except ApiError as error:
             self._say(StopRefused(problem=error.problem))
         else:
-            if isinstance(message, StopPing):
-                self._say(StopPong(t=message.t, server_time=time.time()))
+            if isinstance(message, Ping):
+                self._say(Pong(t=message.t, server_time=time.time()))
             else:
                 self._order(message)
 

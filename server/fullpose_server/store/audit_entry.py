@@ -1,0 +1,19 @@
+"""One line of the audit, before it is a row: light, for the stop gate makes some too."""
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class AuditEntry:
+    """One line: `lease` is (epoch, sequence), `states` before and after, `at` [s] since the epoch."""
+
+    at: float
+    who: str
+    rig: str
+    command: str
+    args: dict[str, Any]
+    lease: tuple[int, int] | None
+    states: tuple[str, str]
+    accepted: bool
+    detail: str | None
