@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import Any
 
+import anyio
 from fastapi import Depends, FastAPI, Request, Response
 from starlette.requests import HTTPConnection
 
@@ -90,6 +91,7 @@ def _lifespan(settings: Settings) -> Callable[[FastAPI], Any]:
             app.state.on_demand = served.scenes
             app.state.services = served.services
             _match_once(app)
+            _load_once()
             yield
 
     return lifespan
@@ -100,6 +102,11 @@ def _match_once(app: FastAPI) -> None:
     nowhere = {"type": "http", "method": "GET", "path": f"{API}/", "root_path": "", "headers": [], "path_params": {}}
     for route in app.router.routes:
         route.matches(dict(nowhere))
+
+
+def _load_once() -> None:
+    """Let anyio load what sends a file, which it does at the first use: that would hold up the event loop (20 ms)."""
+    _ = anyio.open_file
 
 
 async def _scene(connection: HTTPConnection, rig: str) -> None:
