@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.caching import FunctionCache
 
 Kernel = TypeVar("Kernel", bound=Callable[..., object])
 Scalar = float | bool | None  # int is a float to the type checker
@@ -12,12 +13,37 @@ Inner = TypeVar("Inner", bound=Callable[..., Scalar | tuple[Scalar, ...]])
 BORROW: dict[str, Any] = {"_nrt": False}  # no count of an array's owners; not in Numba's type stubs
 
 
+_FunctionCache: Any = FunctionCache  # Numba's functions have no types
+
+
+class Cache(_FunctionCache):  # type: ignore[misc]
+    """Numba's cache on disk; what cannot be read there is compiled anew, and does not end the program.
+
+    Numba reads the index before it sees that the index is of an older source: one that names a record which has been
+    renamed since, or that was cut short, raises from the first call of the kernel.
+    """
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The compiled kernel of a signature, None where there is none."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # noqa: BLE001 - unpickling raises what it likes
+            self.flush()
+            return None
+
+
+def _cached(function: Callable[..., object], **options: Any) -> Any:
+    compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
+    compiled._cache = Cache(function)  # noqa: SLF001 - as `cache=True` does; Numba has no other way to give it one
+    return compiled
+
+
 def kernel(function: Kernel) -> Kernel:
     """Compile `function` with Numba: cached on disk, free of the GIL, IEEE semantics (no fast-math).
 
     `error_model="numpy"` makes a division by zero give inf or nan, as in NumPy, instead of raising from a hot loop.
     """
-    return cast(Kernel, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+    return cast(Kernel, _cached(function))
 
 
 def inner(function: Inner) -> Inner:
@@ -26,9 +52,9 @@ def inner(function: Inner) -> Inner:
     So nobody need count their owners, which Numba otherwise does, atomically, at every view and every call: that was
     half of a step. What it must not do, tests/fullpose/test_jit.py looks for: Numba does not refuse all of it.
     """
-    return cast(Inner, numba.njit(cache=True, nogil=True, error_model="numpy", **BORROW)(function))
+    return cast(Inner, _cached(function, **BORROW))
 
 
 def inlined(function: Inner) -> Inner:
     """An `inner` kernel that becomes part of its caller: for the small ones, whose call costs more than they do."""
-    return cast(Inner, numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True, **BORROW)(function))
+    return cast(Inner, _cached(function, forceinline=True, **BORROW))

@@ -1,6 +1,8 @@
 """How kernels are compiled, and that the inner ones are what their compilation takes them for."""
 
 import ast
+import importlib
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +41,56 @@ def test_division_by_zero_is_numpys() -> None:
 
     assert ratio(1.0, 0.0) == np.inf
     assert np.isnan(ratio(0.0, 0.0))
+
+
+RENAMED = """
+from typing import NamedTuple
+
+from fullpose._jit import kernel
+
+
+class {name}(NamedTuple):
+    a: float
+
+
+@kernel
+def doubled(record):
+    return 2.0 * record.a
+
+
+ANSWER = doubled({name}(3.0))
+HITS = sum(doubled.stats.cache_hits.values())
+"""
+
+
+@pytest.mark.parametrize("spoil", [None, b"", b"not an index"])
+def test_a_cache_that_cannot_be_read_is_made_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, spoil: bytes | None
+) -> None:
+    """A record that was renamed, as an upgrade does, or an index that a full disk cut short."""
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+
+    def hits(name: str) -> int:
+        """Of a process that begins: how often it found its kernel on disk."""
+        file, source = tmp_path / "renamed.py", RENAMED.format(name=name)
+        if not file.exists() or file.read_text(encoding="utf-8") != source:
+            file.write_text(source, encoding="utf-8")
+        sys.modules.pop("renamed", None)
+        importlib.invalidate_caches()
+        module = importlib.import_module("renamed")
+        assert module.ANSWER == 6.0
+        return int(module.HITS)
+
+    try:
+        assert hits("Before") == 0
+        for index in (tmp_path / "cache").rglob("*.nbi") if spoil is not None else ():
+            index.write_bytes(spoil)
+        assert hits("Later") == 0
+        assert hits("Later") == 1
+    finally:
+        sys.modules.pop("renamed", None)
 
 
 @pytest.mark.parametrize("function", INNER)

@@ -12,7 +12,7 @@ from fullpose.plan.three_axis import turns_into_range
 from fullpose.trajectory.beam_search import Start
 from fullpose.trajectory.nodes import lattice
 from fullpose.trajectory.problem import Problem
-from fullpose.trajectory.shortest_path import Avoid, NodePath, Programme
+from fullpose.trajectory.shortest_path import Avoid, NodePath, Programme, Terms
 
 NONE = NodePath(np.empty((0, 4)), math.inf, 0)
 
@@ -56,20 +56,22 @@ def cheapest(problem: Problem, query: Query, progress: Progress | None) -> tuple
 
 def _cheapest_once(problem: Problem, query: Query, progress: Progress | None) -> NodePath:
     """The cheapest node path with the turns counted that the query counts."""
-    programme = Programme(
-        problem.time[query.samples], problem.attitude[query.samples], problem.rig,
-        lattice(problem.rig, query.grid, query.turns, query.slack), problem.options, query.slack,
-    )  # fmt: skip
-    programme.avoid = list(query.avoid)
-    programme.margin_gain = query.margin_gain
+    motion = None
     if problem.start is not None and problem.start_rate is not None:
-        programme.motion = problem.start, problem.start_rate
-    programme.stretch, programme.violation_cost = query.stretch, query.violation_cost
+        motion = problem.start, problem.start_rate
+    terms = Terms(query.slack, query.avoid, query.margin_gain, query.stretch, query.violation_cost, motion)
+    programme = _programme(problem, query, terms)
     node_path = programme.run(problem.start, progress)
     if not node_path.found and programme.bounded:  # the verdict rests on all that the limits allow
-        programme.everywhere = True
-        node_path = programme.run(problem.start, progress)
+        node_path = _programme(problem, query, replace(terms, everywhere=True)).run(problem.start, progress)
     return node_path
+
+
+def _programme(problem: Problem, query: Query, terms: Terms) -> Programme:
+    return Programme(
+        problem.time[query.samples], problem.attitude[query.samples], problem.rig,
+        lattice(problem.rig, query.grid, query.turns, query.slack), problem.options, terms,
+    )  # fmt: skip
 
 
 def searched(problem: Problem, samples: Integers, breadth: Breadth, progress: Progress | None) -> NodePath:

@@ -63,30 +63,47 @@ def reference_rates(rig: Rig) -> Array:
     return rate
 
 
+@dataclass(frozen=True)
+class Terms:
+    """What counts on a node path beside the options' own costs, and how strictly the limits are taken."""
+
+    slack: float = 0.0  # [rad] that every range and edge is widened by
+    avoid: tuple[Avoid, ...] = ()
+    margin_gain: float = 1.0  # times the price on the singularity
+    stretch: float = 1.0  # times the rate limits that an edge may take,
+    violation_cost: float = 0.0  # at this cost of going over one by its whole
+    motion: tuple[Array, Array] | None = None  # pose and rates (4,) at the first stage: what inertia allows
+    everywhere: bool = False  # whether a frame that no rate limit bounds is looked for all the way round
+
+
+PLAIN = Terms()
+
+
 class Programme:
     """The dynamic programme of one flight on one grid; `run` finds the node path."""
 
     def __init__(
-        self, time: Array, attitude: Array, rig: Rig, grid: Lattice, options: PlanOptions, slack: float = 0.0
+        self, time: Array, attitude: Array, rig: Rig, grid: Lattice, options: PlanOptions, terms: Terms = PLAIN
     ) -> None:
-        """time (k,) [s] and attitude (k, 3, 3) of the stages; `slack` [rad] widens every edge and range."""
-        self.time, self.attitude, self.rig, self.grid, self.options = time, attitude, rig, grid, options
-        self.slack = slack
+        """time (k,) [s] and attitude (k, 3, 3) of the stages."""
+        self.time, self.attitude, self.rig, self.grid = time, attitude, rig, grid
+        self.options, self._terms = options, terms
         self._nodes = grid.nodes
         self._copies = Copies(grid.high, grid.wraps, grid.copies, int(np.prod(grid.copies)))
-        self.rates = reference_rates(rig)
-        self.stretch = 1.0
-        self.violation_cost = 0.0
-        self.margin_gain = 1.0
-        self.avoid: list[Avoid] = []
-        self.motion: tuple[Array, Array] | None = None  # pose and rates (4,) at the first stage: what inertia allows
-        self.everywhere = False  # whether a frame that no rate limit bounds is looked for all the way round
+        self._rates = reference_rates(rig)
         longest = float(np.diff(time).max(initial=0.0))
         self._unlimited = longest > 0.0 and bool((rig.max_rate * longest >= math.pi).any())
-        self.room_cost = 0.0  # on ranges nearly used up at the last stage, for a flight that goes on after it
 
     def nodes(self, stage: int) -> Stage:
-        """The nodes of a stage."""
+        """The nodes of a stage, those that inertia keeps out of reach marked as dead."""
+        nodes = self._all_nodes(stage)
+        if self._terms.motion is None:
+            return nodes
+        gap, reach = self._inertia(stage, nodes.position, self._terms.motion)
+        return nodes._replace(alive=nodes.alive & (gap <= reach).all(axis=1))
+
+    def _all_nodes(self, stage: int) -> Stage:
+        """The nodes of a stage, whatever inertia allows."""
         nodes = empty_nodes(self.grid.size)
         fill_nodes(self.grid.horizontal, self.attitude[stage], self._nodes, nodes)
         position, alive = nodes.position, nodes.alive
@@ -94,9 +111,9 @@ class Programme:
         cost = np.empty(len(position))
         node_costs(
             position, nodes.measure, self.rig.home, self.grid.wraps.astype(float), o.home_cost,
-            o.singularity_margin * self.margin_gain, o.singularity_cost * self.margin_gain, cost,
+            o.singularity_margin * self._terms.margin_gain, o.singularity_cost * self._terms.margin_gain, cost,
         )  # fmt: skip
-        for avoided in self.avoid:
+        for avoided in self._terms.avoid:
             if avoided.time[0] <= self.time[stage] <= avoided.time[-1]:
                 gap = position - avoided.angles[int(np.searchsorted(avoided.time, self.time[stage]))]
                 gap -= TURN * np.rint(gap / TURN)
@@ -104,29 +121,16 @@ class Programme:
                 cost += avoided.cost * near
         dt = self.time[min(stage + 1, len(self.time) - 1)] - self.time[max(stage - 1, 0)]
         cost *= 0.5 * dt if len(self.time) > 1 else 1.0
-        if self.motion is not None:
-            alive &= self._within_inertia(stage, position)
-        if self.room_cost and stage == len(self.time) - 1:
-            finite = np.isfinite(self.grid.high)
-            middle = 0.5 * (self.grid.low[finite] + self.grid.high[finite])
-            used = (position[:, finite] - middle) / (self.grid.high[finite] - middle)
-            cost += self.room_cost * (used**4).sum(axis=1)
         return Stage(position, cost, alive)
 
-    def _inertia(self, stage: int, position: Array) -> tuple[Array, Array]:
+    def _inertia(self, stage: int, position: Array, motion: tuple[Array, Array]) -> tuple[Array, Array]:
         """(gap (m, 4), reach (4,)) [rad]: how far from coasting at the first stage's rates, and how far it may be."""
-        assert self.motion is not None
-        pose, rate = self.motion
+        pose, rate = motion
         t = self.time[stage] - self.time[0]
         gap = position - (pose + rate * t)
         gap -= np.where(self.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
-        reach = 0.5 * np.minimum(self.rig.max_acceleration, 1e6) * t * t + 1.5 * self.grid.step + self.slack
+        reach = 0.5 * np.minimum(self.rig.max_acceleration, 1e6) * t * t + 1.5 * self.grid.step + self._terms.slack
         return np.abs(gap), np.asarray(reach)
-
-    def _within_inertia(self, stage: int, position: Array) -> NDArray[np.bool_]:
-        """The nodes (4G,) that the accelerations let the frames reach from the first stage's pose and rates."""
-        gap, reach = self._inertia(stage, position)
-        return np.asarray((gap <= reach).all(axis=1))
 
     def run(self, start: Array | None = None, progress: Progress | None = None) -> NodePath:
         """The cheapest node path from the nodes next to `start` (4,) [rad], or from any."""
@@ -174,7 +178,7 @@ class Programme:
             gap = lifted - start
             gap -= np.where(self.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
             far = np.abs(gap).max(axis=2)
-            near = inside & (far <= 1.5 * self.grid.step + self.slack)
+            near = inside & (far <= 1.5 * self.grid.step + self._terms.slack)
             costs[~near] = math.inf
             costs[near] += far[near]
         return costs.ravel()
@@ -186,17 +190,18 @@ class Programme:
             turned = self.attitude[stage] @ self.attitude[stage - 1].T
             body = math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(turned)) - 1.0))))
             reach = np.where(reach >= math.pi, min(LOOK * body + LOOK_CELLS * self.grid.step, math.pi), reach)
-        return np.asarray(np.minimum(reach, 1e3) + self.slack)
+        return np.asarray(np.minimum(reach, 1e3) + self._terms.slack)
 
     @property
     def bounded(self) -> bool:
         """Whether edges are kept short that the limits do not bound: a node path that is missing then may exist."""
-        return self._unlimited and not self.everywhere
+        return self._unlimited and not self._terms.everywhere
 
     def _step(self, stage: int, position: Array, costs: Array, back: Counts) -> tuple[Array, Array] | None:
         dt = self.time[stage] - self.time[stage - 1]
         ahead, reach = self.nodes(stage), self._reach(stage)
-        edges = Edges(reach, reach * self.stretch, float(self.violation_cost), self.rig.weight / (self.rates**2 * dt))
+        stretch, cost = self._terms.stretch, float(self._terms.violation_cost)
+        edges = Edges(reach, reach * stretch, cost, self.rig.weight / (self._rates**2 * dt))
         after = np.empty_like(costs)
         reached = advance(position, costs, ahead, edges, self._copies, after, back)
         return (ahead.position, after) if reached else None
@@ -215,14 +220,12 @@ class Programme:
 
     def _closed_by_inertia(self, stage: int) -> tuple[int, int] | None:
         """(frame, 2): whose acceleration keeps it from the nearest node of a stage that has some, but for inertia."""
-        if self.motion is None:
+        if self._terms.motion is None:
             return None
-        motion, self.motion = self.motion, None
-        position, _, alive = self.nodes(stage)
-        self.motion = motion
+        position, _, alive = self._all_nodes(stage)
         if not alive.any():
             return None
-        gap, reach = self._inertia(stage, position[alive])
+        gap, reach = self._inertia(stage, position[alive], self._terms.motion)
         ratio = gap / reach
         return int(np.argmax(ratio[np.argmin(ratio.max(axis=1))])), 2
 

@@ -13,7 +13,7 @@ from fullpose.scenarios import random_flight
 from fullpose.trajectory.nodes import lattice
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.problem import Problem
-from fullpose.trajectory.shortest_path import Programme, reference_rates
+from fullpose.trajectory.shortest_path import PLAIN, Programme, Terms, reference_rates
 from fullpose.verify import payload_attitudes
 
 DEG = np.pi / 180.0
@@ -21,10 +21,10 @@ LIMITED = builtin_rigs()["vertical-limited"]
 TURN = 2.0 * np.pi
 
 
-def programme(rig, seed=3, stages=8, grid=12.0, rate=60.0, interval=0.1, **changes):
+def programme(rig, seed=3, stages=8, grid=12.0, rate=60.0, interval=0.1, terms=PLAIN, **changes):
     t, q = random_flight(seed, interval * (stages - 1), 1.0 / interval, rate * DEG)
     options = replace(PlanOptions(), **changes)
-    return Programme(t, dcm_from_quaternion(q), rig, lattice(rig, grid * DEG), options)
+    return Programme(t, dcm_from_quaternion(q), rig, lattice(rig, grid * DEG), options, terms)
 
 
 def brute_force(p):
@@ -37,7 +37,7 @@ def brute_force(p):
         gap = ahead[None, :, :] - position[:, None, :]
         gap -= np.where(p.grid.wraps, TURN * np.rint(gap / TURN), 0.0)
         dt = p.time[k] - p.time[k - 1]
-        allowed = (np.abs(gap) <= p.rig.max_rate * dt + p.slack).all(axis=2)
+        allowed = (np.abs(gap) <= p.rig.max_rate * dt).all(axis=2)
         edges = (p.rig.weight * (gap / rates) ** 2).sum(axis=2) / dt
         total = best[:, None] + np.where(allowed, edges, np.inf)
         best = np.where(alive, total.min(axis=0) + cost, np.inf)
@@ -119,14 +119,13 @@ def test_turns_of_a_bounded_frame_are_counted():
 
 def test_without_rate_limits_the_node_path_is_looked_for_nearby_and_then_everywhere():
     rig = Rig("free", Geometry.VERTICAL_4, (FrameLimits(),) * 4)
-    p = programme(rig, stages=40, grid=4.0, interval=0.05)
-    assert p.bounded
-    assert (p._reach(1) < 1.5).all()
-    near = p.run()
-    p.everywhere = True
-    assert not p.bounded
-    assert (p._reach(1) > np.pi).all()
-    assert near.cost == pytest.approx(p.run().cost)  # the cheapest node path has no long edges
+    near = programme(rig, stages=40, grid=4.0, interval=0.05)
+    assert near.bounded
+    assert (near._reach(1) < 1.5).all()
+    everywhere = programme(rig, stages=40, grid=4.0, interval=0.05, terms=Terms(everywhere=True))
+    assert not everywhere.bounded
+    assert (everywhere._reach(1) > np.pi).all()
+    assert near.run().cost == pytest.approx(everywhere.run().cost)  # the cheapest node path has no long edges
     assert not programme(LIMITED).bounded
 
 
@@ -140,10 +139,10 @@ def test_a_node_path_that_is_missing_nearby_is_looked_for_everywhere(monkeypatch
 
 
 def test_inertia_that_closes_the_way_is_named_as_an_acceleration():
-    p = programme(replace_acceleration(LIMITED, 1.0 * DEG), stages=20, grid=2.0, interval=0.05)
     pose = programme(LIMITED, stages=20, grid=2.0, interval=0.05).run().angles[0]
-    p.motion = pose, np.array([3.0, -3.0, 3.0, 3.0])
-    node_path = p.run(pose)
+    moving = Terms(motion=(pose, np.array([3.0, -3.0, 3.0, 3.0])))
+    sluggish = replace_acceleration(LIMITED, 1.0 * DEG)
+    node_path = programme(sluggish, stages=20, grid=2.0, interval=0.05, terms=moving).run(pose)
     assert not node_path.found
     assert node_path.limit == ACCELERATION
 
