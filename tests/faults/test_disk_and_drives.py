@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from fullpose_server.drives.packet import Order
-from fullpose_server.formats.plan_folder import PlanFolder, PlanInfo, plan_hash
+from fullpose_server.formats.plan_folder import PlanFolder, sealed_plan
 from fullpose_server.runtime.contract.config import RigConfig, Tolerance
 from fullpose_server.runtime.recording.export import repair
 from fullpose_server.runtime.recording.mcap_reader import is_complete, read_events, read_samples
@@ -127,9 +127,8 @@ def test_a_jump_in_a_plan_is_caught_before_it_is_written(tmp_path: Path) -> None
         sound = plan_of(config.rig, 4.0)
         angles = np.array(sound.angles)
         angles[3000:, 2] += np.radians(2.0)
-        digest = plan_hash(angles, sound.target, sound.error)
-        info = PlanInfo(**{**vars(sound.info), "plan_hash": digest})
-        folder = written(tmp_path / "plan", PlanFolder(info, angles, sound.target, sound.error))
+        jumping = sealed_plan(PlanFolder(sound.info, angles, sound.target, sound.error))
+        folder = written(tmp_path / "plan", jumping)
         async with hosted(config) as (host, operator):
             await operator.arm(folder)
             await operator.must("start")

@@ -1,11 +1,14 @@
 """What every way to command a session shares: the priority channel of stop and E-stop, and the audit that follows."""
 
+import asyncio
 from collections.abc import Coroutine
 from typing import Any
 
 from fullpose_server.api.deps import Services
 from fullpose_server.api.schemas.session import LeaseToken
 from fullpose_server.api.stopping import NOTHING_RUNS, audit_entry
+from fullpose_server.errors import FileError, NotFoundError
+from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.session.errors import IllegalCommandError
 from fullpose_server.session.states import Command, State
@@ -22,6 +25,15 @@ def by_priority(services: Services, rig: str, command: Command, who: str) -> Cor
         return reply
 
     return replied()
+
+
+async def with_rig_file(services: Services, rig: str, args: dict[str, Any]) -> dict[str, Any]:
+    """The arguments of a load or an arm, and which rig the rig's file says by now, where it says one."""
+    try:
+        entry = await asyncio.to_thread(services.rigs.get, rig)
+    except (NotFoundError, FileError):
+        return args  # a rig that runs is known, whatever has become of its file
+    return args | {"rig_file_hash": rig_hash(entry.rig)}
 
 
 def without_process(command: Command) -> Reply:

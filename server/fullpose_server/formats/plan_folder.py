@@ -2,7 +2,8 @@
 
 A folder holds `plan.json` and three arrays at the rig's uniform rate, lead-in and lead-out included:
 `angles.npy` (n, 4) [rad], `target.npy` (n, 4) the flight's attitude as quaternion w, x, y, z (nan in the leads) and
-`error.npy` (n,) the solve error [rad] (nan in the leads). It is written whole or not at all.
+`error.npy` (n,) the solve error [rad] (nan in the leads). It is written whole or not at all, and sealed: whatever of it
+is changed later is noticed where it is read to be flown (`plan_seal`).
 """
 
 import hashlib
@@ -10,7 +11,8 @@ import json
 import math
 import shutil
 import tempfile
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,8 +24,12 @@ from fullpose.rig import FRAMES, Rig
 from fullpose_server.errors import DamagedError
 from fullpose_server.formats import durable
 from fullpose_server.formats.mapped import map_doubles
+from fullpose_server.formats.plan_seal import arrays_sealed, facts_sealed, seal_hash, unlike
 
+FORMAT = 2  # 1: no such key, and a hash of the arrays alone
+MAKE_AGAIN = "make the plan again"
 _ARRAYS = ("angles", "target", "error")
+_SEAL = ("plan_hash", "sealed")
 
 
 class PlanFolderError(Exception):
@@ -42,7 +48,7 @@ class PlanInfo:
     plan_id: str
     rig: str
     rig_hash: str
-    plan_hash: str  # sha-256 of the three arrays
+    plan_hash: str  # sha-256 of the seal
     trajectory_sha256: str
     method: str
     rate_hz: float
@@ -53,6 +59,13 @@ class PlanInfo:
     feasible: bool
     name: str = ""  # of the trajectory, for people
     start_s: float = 0.0  # the flight's own time at its first sample
+    format: int = 1  # of the folder
+    sealed: dict[str, str] = field(default_factory=dict)  # digests of every other key and of the three arrays
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What the seal is of, beside the arrays."""
+        return {key: value for key, value in asdict(self).items() if key not in _SEAL}
 
 
 @dataclass(frozen=True)
@@ -96,15 +109,6 @@ def rig_hash(rig: Rig) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def plan_hash(angles: Array, target: Array, error: Array) -> str:
-    """sha-256 of the arrays' shapes and little-endian values."""
-    digest = hashlib.sha256()
-    for array in (angles, target, error):
-        digest.update(repr(array.shape).encode())
-        digest.update(np.ascontiguousarray(array, dtype="<f8").tobytes())
-    return digest.hexdigest()
-
-
 def make_plan(origin: PlanOrigin, rig: Rig, rate_hz: float, path: PlanPath, *, feasible: bool) -> PlanFolder:
     """A plan from its arrays (shapes as in `PlanPath`). Target quaternions are made continuous in sign.
 
@@ -130,7 +134,7 @@ def make_plan(origin: PlanOrigin, rig: Rig, rate_hz: float, path: PlanPath, *, f
         plan_id=origin.plan_id,
         rig=rig.name,
         rig_hash=rig_hash(rig),
-        plan_hash=plan_hash(x, q, e),
+        plan_hash="",
         trajectory_sha256=origin.trajectory_sha256,
         method=origin.method,
         rate_hz=float(rate_hz),
@@ -140,9 +144,20 @@ def make_plan(origin: PlanOrigin, rig: Rig, rate_hz: float, path: PlanPath, *, f
         duration_s=(n - lead_in_samples - lead_out_samples - 1) / rate_hz,
         feasible=feasible,
         name=origin.name,
-        start_s=origin.start_s,
+        start_s=float(origin.start_s),
+        format=FORMAT,
     )
-    return PlanFolder(info, x, q, e)
+    return sealed_plan(PlanFolder(info, x, q, e))
+
+
+def sealed_plan(plan: PlanFolder) -> PlanFolder:
+    """The plan with the seal of what it says."""
+    sealed = _seal_of(plan)
+    return replace(plan, info=replace(plan.info, plan_hash=seal_hash(sealed), sealed=sealed))
+
+
+def _seal_of(plan: PlanFolder) -> dict[str, str]:
+    return facts_sealed(plan.info.facts) | arrays_sealed({name: getattr(plan, name) for name in _ARRAYS})
 
 
 def _continuous(q: Array) -> Array:
@@ -170,12 +185,35 @@ def write_plan(folder: Path, plan: PlanFolder) -> None:
         raise
 
 
-def read_plan(folder: Path, *, verify: bool = True) -> PlanFolder:
-    """The plan in `folder`, arrays mapped read-only; `verify` recomputes the hash.
+def read_plan(folder: Path) -> PlanFolder:
+    """The plan in `folder` as it can be looked at: arrays mapped read-only, and not compared with the seal.
 
-    Raises `PlanFolderError` where a file is missing, the arrays are not what plan.json says, or the hash differs.
+    Raises `PlanFolderError` where a file is missing, or the arrays are not of the shape that plan.json says.
     """
-    info = _read_info(folder)
+    return _mapped(folder, _read_info(folder))
+
+
+def read_sealed_plan(folder: Path) -> PlanFolder:
+    """The plan in `folder` as it can be flown: in memory, and just as it was made.
+
+    Raises `PlanFolderError` as `read_plan`, and where something is not what was sealed: which file, and what of it.
+    """
+    info, path = _read_info(folder), folder / "plan.json"
+    if info.format != FORMAT:
+        raise PlanFolderError(path, f"format {info.format}, no hash of all that moves the rig: {MAKE_AGAIN}")
+    _check_seal(path, facts_sealed(info.facts), {k: v for k, v in info.sealed.items() if k not in _ARRAYS})
+    if seal_hash(info.sealed) != info.plan_hash:
+        raise PlanFolderError(path, f"plan_hash: not that of what is sealed: {MAKE_AGAIN}")
+    mapped = _mapped(folder, info)
+    # First into memory: what is compared is what is flown, whoever writes to the files meanwhile.
+    arrays = {name: np.array(getattr(mapped, name)) for name in _ARRAYS}
+    for name, digest in arrays_sealed(arrays).items():
+        _check_seal(folder / f"{name}.npy", {name: digest}, {name: info.sealed.get(name, "")})
+        arrays[name].setflags(write=False)
+    return PlanFolder(info, **arrays)
+
+
+def _mapped(folder: Path, info: PlanInfo) -> PlanFolder:
     arrays: dict[str, Any] = {}
     for name, shape in (("angles", (info.samples, 4)), ("target", (info.samples, 4)), ("error", (info.samples,))):
         path = folder / f"{name}.npy"
@@ -183,20 +221,38 @@ def read_plan(folder: Path, *, verify: bool = True) -> PlanFolder:
             arrays[name] = map_doubles(path, shape)
         except DamagedError as error:
             raise PlanFolderError(path, str(error).removeprefix(f"{path}: ")) from error
-    plan = PlanFolder(info, **arrays)
-    if verify and plan_hash(plan.angles, plan.target, plan.error) != info.plan_hash:
-        raise PlanFolderError(folder, "the arrays are not those that plan.json's hash was taken of")
-    return plan
+    return PlanFolder(info, **arrays)
+
+
+def _check_seal(path: Path, found: Mapping[str, str], sealed: Mapping[str, str]) -> None:
+    other = unlike(found, sealed)
+    if other:
+        raise PlanFolderError(path, f"{', '.join(other)}: not as the plan was made: {MAKE_AGAIN}")
+
+
+def changed_since(was: PlanInfo, now: PlanInfo) -> list[str]:
+    """What of a sealed plan is not what it was: the keys of plan.json, with both values, and the arrays."""
+    facts = was.facts, now.facts
+    told = [f"{key} was {facts[0][key]!r}, is {facts[1][key]!r}" for key in facts[0] if facts[0][key] != facts[1][key]]
+    return told + [f"{name}.npy is another" for name in unlike(was.sealed, now.sealed) if name in _ARRAYS]
 
 
 def _read_info(folder: Path) -> PlanInfo:
     path = folder / "plan.json"
     try:
-        # Keys may be added by whoever stores plans; those that the rig needs must be there, and be what they are.
-        info = msgspec.json.decode(path.read_bytes(), type=PlanInfo)
+        raw = msgspec.json.decode(path.read_bytes(), type=dict[str, Any])
+        _check_keys(raw, path)
+        info = msgspec.convert(raw, PlanInfo)
     except (OSError, ValueError, msgspec.MsgspecError) as cause:
         raise PlanFolderError(path, f"not a plan ({cause})") from cause
     leads = (info.lead_in_samples, info.lead_out_samples)
     if min(leads) < 0 or sum(leads) + 2 > info.samples or not 0.0 < info.rate_hz < math.inf:
         raise PlanFolderError(path, f"{info.samples} samples, leads of {leads}, {info.rate_hz} Hz: expected a flight")
     return info
+
+
+def _check_keys(raw: Mapping[str, Any], path: Path) -> None:
+    """Refuse what no seal covers."""
+    unknown = sorted(raw.keys() - {each.name for each in fields(PlanInfo)})
+    if unknown:
+        raise PlanFolderError(path, f"{', '.join(unknown)}: not a key of a plan; {MAKE_AGAIN}")

@@ -41,7 +41,7 @@ def open_plan(plan: str, plans: PlanStore, quarantine: Quarantine) -> PlanFolder
     """The plan's arrays, mapped. Raises `DamagedError`: then its files are in quarantine, and its row says so."""
     folder = plans.folder(plan)
     try:
-        return read_plan(folder, verify=False)
+        return read_plan(folder)
     except PlanFolderError as error:
         quarantine.take("plan", plan, [folder], str(error))
         plans.damaged(plan, str(error))

@@ -3,18 +3,23 @@
 import dataclasses
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from fullpose.rig import builtin_rigs
+from fullpose.rig import FrameLimits, Geometry, builtin_rigs
 from fullpose_server.formats.plan_folder import (
     PlanFolderError,
+    PlanInfo,
     PlanOrigin,
     PlanPath,
+    changed_since,
     make_plan,
     read_plan,
+    read_sealed_plan,
     rig_hash,
+    sealed_plan,
     write_plan,
 )
 from tests.fullpose_server.runtime.rigs import plan_of
@@ -25,7 +30,7 @@ RIG = builtin_rigs()["vertical-limited"]
 def test_a_plan_comes_back_as_it_was(tmp_path: Path) -> None:
     plan = plan_of(RIG, 0.5)
     write_plan(tmp_path / "plan", plan)
-    again = read_plan(tmp_path / "plan")
+    again = read_sealed_plan(tmp_path / "plan")
     assert again.info == plan.info
     for name in ("angles", "target", "error"):
         np.testing.assert_array_equal(getattr(again, name), getattr(plan, name))
@@ -40,24 +45,93 @@ def test_writing_again_replaces_the_whole(tmp_path: Path) -> None:
     write_plan(tmp_path / "plan", plan_of(RIG, 0.5))
     longer = plan_of(RIG, 0.7, plan_id="second")
     write_plan(tmp_path / "plan", longer)
-    assert read_plan(tmp_path / "plan").info == longer.info
+    assert read_sealed_plan(tmp_path / "plan").info == longer.info
 
 
-def test_added_keys_are_no_matter(tmp_path: Path) -> None:
-    write_plan(tmp_path / "plan", plan_of(RIG, 0.5))
+ARRAYS = ("angles", "target", "error")
+KEYS = [field.name for field in dataclasses.fields(PlanInfo)]
+
+
+def edit(folder: Path, **changes: Any) -> None:
+    path = folder / "plan.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+
+def other(value: Any) -> Any:
+    """A value of the same kind that a plan could have."""
+    match value:
+        case bool():
+            return not value
+        case int() | float():
+            return value * 0.5 if isinstance(value, float) and value else value + 1
+        case str():
+            return f"{value[:-1]}{'a' if value[-1:] != 'a' else 'b'}"
+        case _:
+            return {key: other(one) for key, one in value.items()}
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_a_plan_with_any_key_changed_cannot_be_flown_and_is_told_by_file_and_key(tmp_path: Path, key: str) -> None:
+    plan = plan_of(RIG, 0.5)
+    write_plan(tmp_path / "plan", plan)
+    edit(tmp_path / "plan", **{key: other(getattr(plan.info, key))})
+    told = "format 3" if key == "format" else "duration_s" if key == "sealed" else key
+    with pytest.raises(PlanFolderError, match=rf"plan\.json: .*{told}.*make the plan again") as refused:
+        read_sealed_plan(tmp_path / "plan")
+    assert refused.value.path == tmp_path / "plan" / "plan.json"
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_a_plan_without_any_one_of_its_keys_cannot_be_flown(tmp_path: Path, key: str) -> None:
+    plan = plan_of(RIG, 0.5)
+    named = dataclasses.replace(plan.info, name="loop", start_s=2.0)
+    write_plan(tmp_path / "plan", sealed_plan(dataclasses.replace(plan, info=named)))
     path = tmp_path / "plan" / "plan.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"colour": "green"}))
-    read_plan(tmp_path / "plan")
+    edited = json.loads(path.read_text())
+    del edited[key]
+    path.write_text(json.dumps(edited))
+    with pytest.raises(PlanFolderError, match=r"plan\.json"):
+        read_sealed_plan(tmp_path / "plan")
 
 
-def test_touched_arrays_are_noticed(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ARRAYS)
+def test_a_plan_with_any_array_changed_cannot_be_flown_and_is_told_by_its_file(tmp_path: Path, name: str) -> None:
     write_plan(tmp_path / "plan", plan_of(RIG, 0.5))
-    path = tmp_path / "plan" / "angles.npy"
+    path = tmp_path / "plan" / f"{name}.npy"
     array = np.load(path)
-    array[10, 2] += 1e-9
+    array[tuple(n // 2 for n in array.shape)] += 1e-9
     np.save(path, array)
-    with pytest.raises(PlanFolderError, match="hash"):
+    read_plan(tmp_path / "plan")
+    with pytest.raises(PlanFolderError, match=rf"{name}\.npy: {name}: not as the plan was made"):
+        read_sealed_plan(tmp_path / "plan")
+
+
+def test_a_key_that_no_seal_covers_is_refused(tmp_path: Path) -> None:
+    write_plan(tmp_path / "plan", plan_of(RIG, 0.5))
+    edit(tmp_path / "plan", colour="green")
+    with pytest.raises(PlanFolderError, match=r"plan\.json: colour: not a key of a plan"):
         read_plan(tmp_path / "plan")
+
+
+def test_a_plan_of_the_first_format_can_be_looked_at_and_not_flown(tmp_path: Path) -> None:
+    plan = plan_of(RIG, 0.5)
+    write_plan(tmp_path / "plan", plan)
+    path = tmp_path / "plan" / "plan.json"
+    old = {key: value for key, value in json.loads(path.read_text()).items() if key not in ("format", "sealed")}
+    path.write_text(json.dumps(old | {"plan_hash": "0" * 64}))
+    np.testing.assert_array_equal(read_plan(tmp_path / "plan").angles, plan.angles)
+    with pytest.raises(PlanFolderError, match=r"format 1.*: make the plan again") as refused:
+        read_sealed_plan(tmp_path / "plan")
+    assert "\n" not in str(refused.value)
+
+
+def test_what_was_changed_since_is_told_with_both_values() -> None:
+    plan = plan_of(RIG, 0.5)
+    angles = plan.angles + 0.0
+    angles[3, 1] += 1e-12
+    changed = sealed_plan(dataclasses.replace(plan, info=dataclasses.replace(plan.info, rate_hz=500.0), angles=angles))
+    assert changed_since(plan.info, plan.info) == []
+    assert changed_since(plan.info, changed.info) == ["rate_hz was 1000.0, is 500.0", "angles.npy is another"]
 
 
 @pytest.mark.parametrize(
@@ -89,7 +163,16 @@ def test_target_signs_are_made_continuous() -> None:
     np.testing.assert_allclose(again.target, plan.target, atol=1e-15)
 
 
-def test_the_rig_s_hash_is_about_its_limits_and_not_its_name() -> None:
+def test_the_rig_s_hash_covers_all_of_a_rig_but_its_name() -> None:
+    assert {field.name for field in dataclasses.fields(RIG)} == {"name", "geometry", "frames"}
     assert rig_hash(dataclasses.replace(RIG, name="other")) == rig_hash(RIG)
-    frame = dataclasses.replace(RIG.frames[3], max_rate=RIG.frames[3].max_rate * (1 + 1e-15))
-    assert rig_hash(dataclasses.replace(RIG, frames=(*RIG.frames[:3], frame))) != rig_hash(RIG)
+    changed = {rig_hash(dataclasses.replace(RIG, geometry=Geometry.HORIZONTAL_4))}
+    finite = FrameLimits(-1.0, 1.0, 2.0, 3.0, 1.0, 0.25)
+    rig = dataclasses.replace(RIG, frames=(finite,) * 4)
+    changed.add(rig_hash(rig))
+    for k in range(4):
+        for field in dataclasses.fields(FrameLimits):
+            frame = dataclasses.replace(finite, **{field.name: getattr(finite, field.name) * (1.0 + 1e-15)})
+            changed.add(rig_hash(dataclasses.replace(rig, frames=(*rig.frames[:k], frame, *rig.frames[k + 1 :]))))
+    assert rig_hash(RIG) not in changed
+    assert len(changed) == 2 + 4 * len(dataclasses.fields(FrameLimits))

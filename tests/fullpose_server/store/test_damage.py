@@ -72,7 +72,7 @@ def test_a_plan_is_whole_or_known_to_be_damaged(whole: Path, tmp_path: Path, pla
     shutil.copytree(source, folder)
     (folder / name).write_bytes(damaged((source / name).read_bytes(), place, how))
     with contextlib.suppress(PlanFolderError):
-        read_plan(folder, verify=False)
+        read_plan(folder)
 
 
 @FEW

@@ -12,7 +12,7 @@ import msgspec
 from fastapi import APIRouter, WebSocket
 from pydantic import TypeAdapter
 
-from fullpose_server.api.commanding import audit
+from fullpose_server.api.commanding import audit, with_rig_file
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import problem_of
 from fullpose_server.api.problems import ApiError
@@ -146,7 +146,8 @@ class _Source:
         if message.lease is not None:
             settings = message.model_dump(include={"method", "options", "first_sample_s"})
             token = LeaseToken(message.lease.epoch, message.lease.sequence)
-            reply = await self._host.command("load", {"live": settings}, self._who, token)
+            args = await with_rig_file(self._services, self._host.name, {"live": settings})
+            reply = await self._host.command("load", args, self._who, token)
             audit(self._services, self._host.name, self._who, "load", {"live": settings}, message.lease, reply)
             answer("load", reply)  # raises the refusal
         self._convention = message.convention

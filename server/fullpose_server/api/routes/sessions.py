@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Response
 
-from fullpose_server.api.commanding import audit, by_priority, without_process
+from fullpose_server.api.commanding import audit, by_priority, with_rig_file, without_process
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.session import (
@@ -69,6 +69,8 @@ async def command(
     args: dict[str, Any] = body.args.model_dump(exclude_none=True)
     if isinstance(body.args, LoadArgs):
         args = await _load_args(services, rig, body.args)
+    if body.command in (Command.LOAD, Command.ARM):
+        args = await with_rig_file(services, rig, args)
     token = None if body.lease is None else Token(body.lease.epoch, body.lease.sequence)
     try:
         reply = await host.command(body.command, args, who, token)
@@ -167,4 +169,4 @@ async def _load_args(services: Services, rig: str, args: LoadArgs) -> dict[str, 
         why = f"plan {plan} cannot be flown: {result['refusal']}"
     if why is not None:
         raise ApiError(409, "not-flyable", why, state=services.hosts.state(rig), command="load")
-    return {"plan_folder": str(services.plans.folder(plan).resolve())}
+    return {"plan_folder": str(services.plans.folder(plan).resolve()), "plan_hash": result["plan_hash"]}

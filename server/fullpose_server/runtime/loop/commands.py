@@ -152,6 +152,7 @@ class CommandHandler:
             case Command.CONNECT:
                 self._connect(now)
             case Command.LOAD:
+                orders.check_rig(request.args, p.config.rig)
                 try:
                     binding, load = orders.load_of(request.args, p.config.rig, p.motion, p.live)
                 finally:
@@ -186,6 +187,11 @@ class CommandHandler:
         orders.check_record(p.config.runs, p.config.min_free_mb, silent_s)
         pair = orders.asked_pair(request.args, p.machine.binding)
         p.machine.check_pair(pair)
+        orders.check_rig(request.args, p.config.rig)
+        try:
+            orders.check_stored(p.state.plan_folder, p.state.plan)
+        finally:
+            self._deadlines.restart()
         # What came before in this very tick may have taken long (a load): the drive and we agree on the time again.
         p.state.status = p.drive.read(now, p.state.measured, p.state.measured_rate)
         return GivenOf(pair)

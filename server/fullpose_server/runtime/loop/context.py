@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TypeAlias
 
 from fullpose._typing import Array
@@ -34,6 +35,7 @@ class LoopState:
     disable_at_rest: bool = False
     run_id: str | None = None  # of the flight that is recorded
     plan: PlanInfo | None = None  # the one that was loaded last; None for a live source
+    plan_folder: Path | None = None  # where it is
     ticks: int = 0
     tracking_error: float = math.nan  # [rad]
     ending: bool = False  # the process ends after this tick

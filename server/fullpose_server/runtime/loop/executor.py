@@ -104,6 +104,7 @@ class Executor:
     def _bind(self, load: Load) -> None:
         p = self._parts
         p.state.plan = None if load.plan is None else load.plan.info
+        p.state.plan_folder = load.folder
         if load.player is not None:
             p.motion.bind(load.player)
         if load.live is not None:

@@ -10,7 +10,14 @@ import msgspec
 import numpy as np
 
 from fullpose.rig import FRAMES, Rig
-from fullpose_server.formats.plan_folder import PlanFolder, PlanFolderError, read_plan, rig_hash
+from fullpose_server.formats.plan_folder import (
+    PlanFolder,
+    PlanFolderError,
+    PlanInfo,
+    changed_since,
+    read_sealed_plan,
+    rig_hash,
+)
 from fullpose_server.runtime.live.settings import LiveError, LiveSettings
 from fullpose_server.runtime.live.source import LiveSource, ReadyLive
 from fullpose_server.runtime.motion.generator import Motion
@@ -31,6 +38,7 @@ class Load:
     """What `load` brings, made ready: a plan with its player, or a live source's settings with their step."""
 
     plan: PlanFolder | None = None
+    folder: Path | None = None  # of the plan
     player: PathPlayer | None = None
     live: ReadyLive | None = None
 
@@ -54,13 +62,41 @@ def load_of(args: dict[str, Any], rig: Rig, motion: Motion, live: LiveSource) ->
     folder = args.get("plan_folder")
     if not isinstance(folder, str):
         raise OrderError("bad_arguments", "load needs plan_folder (a path), or live (settings)")
+    plan = _flyable(Path(folder))
+    info = plan.info
+    if args.get("plan_hash", info.plan_hash) != info.plan_hash:
+        text = f"{folder}/plan.json: plan_hash is {info.plan_hash[:16]}, not that of the plan that was made"
+        raise OrderError("bad_plan", f"{text} ({args['plan_hash'][:16]}): make it again")
+    _check_path(plan, rig)
+    binding = Binding(info.plan_id, info.plan_hash, info.rig, info.rig_hash)
+    return binding, Load(plan, Path(folder), motion.ready(plan))
+
+
+def _flyable(folder: Path) -> PlanFolder:
     try:
-        plan = read_plan(Path(folder))
+        plan = read_sealed_plan(folder)
     except PlanFolderError as cause:
         raise OrderError("bad_plan", str(cause)) from cause
-    _check_path(plan, rig)
-    info = plan.info
-    return Binding(info.plan_id, info.plan_hash, info.rig, info.rig_hash), Load(plan, motion.ready(plan))
+    if not plan.info.feasible:
+        raise OrderError("bad_plan", f"{folder}/plan.json: feasible is false: it cannot be flown")
+    return plan
+
+
+def check_stored(folder: Path | None, loaded: PlanInfo | None) -> None:
+    """Raise `OrderError` where the plan in `folder` is not as it was when it was loaded."""
+    if folder is None or loaded is None:
+        return  # a live source
+    changed = changed_since(loaded, _flyable(folder).info)
+    if changed:
+        text = f"{folder}/plan.json: {', '.join(changed)} since the plan was loaded"
+        raise OrderError("bad_plan", f"{text}: unload it, and load it again")
+
+
+def check_rig(args: dict[str, Any], rig: Rig) -> None:
+    """Raise `OrderError` where the rig's file, by its hash, no longer says the rig that is flown."""
+    if args.get("rig_file_hash", rig_hash(rig)) != rig_hash(rig):
+        text = f"the file of rig {rig.name} says another geometry or other limits than when its process started"
+        raise OrderError("rig_changed", f"{text}: put it back, or restart the server to fly by it")
 
 
 def _check_path(plan: PlanFolder, rig: Rig) -> None:
