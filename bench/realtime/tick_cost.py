@@ -23,7 +23,7 @@ from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.live.packets import Kind, encode_sample
 from fullpose_server.runtime.live.source import LiveSource
-from fullpose_server.runtime.loop.clock import seconds
+from fullpose_server.runtime.loop.clock import SteppedClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
 from fullpose_server.runtime.loop.leisure import Leisure
 from fullpose_server.runtime.loop.process import assemble
@@ -32,25 +32,6 @@ from fullpose_server.session.states import State
 
 RIG = "vertical-4"
 PERIOD_NS = 1_000_000
-
-
-class SteppedClock:
-    """A clock that is moved."""
-
-    def __init__(self) -> None:
-        self.now = 1_000_000_000_000
-
-    def monotonic_ns(self) -> int:
-        """Made up [ns]."""
-        return self.now
-
-    def wall_ns(self) -> int:
-        """Made up [ns]."""
-        return 1_700_000_000_000_000_000 + self.now
-
-    def sleep(self, seconds: float) -> None:
-        """Moves on."""
-        self.now += round(seconds * 1e9)
 
 
 class Source:

@@ -13,13 +13,12 @@ from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.live.packets import Kind, encode_sample
 from fullpose_server.runtime.live.source import LiveSource
-from fullpose_server.runtime.loop.clock import seconds
+from fullpose_server.runtime.loop.clock import SteppedClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
 from fullpose_server.runtime.loop.leisure import Leisure
 from fullpose_server.runtime.loop.process import assemble
 from fullpose_server.session.lease import LeaseToken
 from fullpose_server.session.states import State
-from tests.support.made_up_clock import MadeUpClock
 
 
 class Link:
@@ -65,7 +64,7 @@ class MadeUpRig:
     """
 
     def __init__(self, config: RigConfig, memory: Path, options: SimulatedOptions | None = None) -> None:
-        self.clock = MadeUpClock()
+        self.clock = SteppedClock()
         self.shared = Shared(memory, create=True)
         self.link = Link()
         self.drive = SimulatedDrive(config.rig, config.rate_hz, options or SimulatedOptions())

@@ -3,7 +3,7 @@ import { beforeEach, describe, expect, it } from "vitest";
 import type { CommandDone } from "../contract/types";
 import { World } from "../testing/world";
 import { ANSWER_MS, StopChannel } from "./stopChannel";
-import { PING_PERIOD_MS, SILENCE_MS } from "./stream";
+import { PING_PERIOD_MS, SILENCE_MS } from "./keptSocket";
 
 const DONE: CommandDone = { command: "estop", state_before: "running", state_after: "estopped", revision: 3 };
 

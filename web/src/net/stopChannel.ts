@@ -3,8 +3,8 @@ import type { sockets } from "../contract/schema";
 import type { CommandDone, Urgent } from "../contract/types";
 import { ApiError } from "./errors";
 import { me } from "./identity";
+import { BROWSER, KeptSocket, type Surroundings } from "./keptSocket";
 import { socketTo } from "./request";
-import { backoffMs, BROWSER, PING_PERIOD_MS, SILENCE_MS, type Socket, type Surroundings } from "./stream";
 
 type Answer = sockets["/api/v1/stop"]["answered"];
 type Ask = sockets["/api/v1/stop"]["sent"];
@@ -28,24 +28,25 @@ interface Waiting {
 }
 
 export class StopChannel implements StopLine {
-  #socket: Socket | null = null;
-  #open = false;
-  #attempt = 0;
-  #heardAt = 0;
+  readonly #socket: KeptSocket;
   #number = 0;
   readonly #waiting = new Map<number, Waiting>();
 
   constructor(
     private readonly roundTrip: (ms: number | null) => void,
     private readonly around: Surroundings = BROWSER,
-    private readonly url: string = socketTo("/api/v1/stop", {}),
+    url: string = socketTo("/api/v1/stop", {}),
   ) {
-    this.#connect();
-    this.#tick();
+    const socket = {
+      opened: () => this.#socket.settle(),
+      received: (data: unknown) => this.#receive(data),
+      lost: () => this.#lost(),
+    };
+    this.#socket = new KeptSocket(url, socket, around);
   }
 
   press = (what: Urgent, rig: string): Promise<CommandDone | null> => {
-    if (!this.#open) return Promise.resolve(null);
+    if (!this.#socket.settled) return Promise.resolve(null);
     const id = ++this.#number;
     return new Promise((resolve, reject) => {
       const timer = this.around.setTimeout(() => this.#settle(id, null), ANSWER_MS);
@@ -65,24 +66,10 @@ export class StopChannel implements StopLine {
   };
 
   #say(message: Ask): void {
-    this.#socket?.send(JSON.stringify(message));
-  }
-
-  #connect(): void {
-    const socket = this.around.open(this.url);
-    this.#socket = socket;
-    this.#heardAt = this.around.now();
-    socket.onopen = () => {
-      this.#open = true;
-      this.#attempt = 0;
-      this.#say({ type: "ping", t: this.around.now() });
-    };
-    socket.onmessage = ({ data }) => this.#receive(data);
-    socket.onclose = () => this.#lost();
+    this.#socket.send(message);
   }
 
   #receive(data: unknown): void {
-    this.#heardAt = this.around.now();
     const message = JSON.parse(String(data)) as Answer;
     switch (message.type) {
       case "pong":
@@ -111,26 +98,8 @@ export class StopChannel implements StopLine {
     waiting?.refuse(error);
   }
 
-  /** Asks for the round trip once a second, and gives up a channel from which nothing comes. */
-  #tick(): void {
-    this.around.setTimeout(() => {
-      if (this.#socket && this.around.now() - this.#heardAt > SILENCE_MS) this.#lost();
-      else if (this.#open) this.#say({ type: "ping", t: this.around.now() });
-      this.#tick();
-    }, PING_PERIOD_MS);
-  }
-
   #lost(): void {
-    const socket = this.#socket;
-    this.#socket = null;
-    this.#open = false;
-    if (socket) {
-      socket.onopen = socket.onmessage = socket.onclose = null;
-      socket.close();
-    }
     this.roundTrip(null);
     for (const id of [...this.#waiting.keys()]) this.#settle(id, null);
-    this.#attempt++;
-    this.around.setTimeout(() => this.#connect(), backoffMs(this.#attempt, this.around.random()));
   }
 }

@@ -1,7 +1,8 @@
 import { beforeEach, describe, expect, it } from "vitest";
 import type { Snapshot } from "../contract/types";
 import type { LinkEvent } from "./link";
-import { backoffMs, PING_PERIOD_MS, RECORD_MS, SILENCE_MS, Stream } from "./stream";
+import { backoffMs, PING_PERIOD_MS, SILENCE_MS } from "./keptSocket";
+import { RECORD_MS, Stream } from "./stream";
 import { World } from "../testing/world";
 import { HEADER_BYTES, type Batch } from "./telemetry";
 

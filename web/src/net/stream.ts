@@ -1,4 +1,4 @@
-/** The stream client of one rig: owns the socket, the reconnects and the pings; decides nothing. */
+/** The stream client of one rig: reads what the server says, and decides nothing. */
 import {
   STREAM_SCHEMA,
   type PlaybackControl,
@@ -7,45 +7,12 @@ import {
   type ServerMessage,
   type Subscribe,
 } from "../contract/types";
+import { BROWSER, KeptSocket, SILENCE_MS, type Surroundings } from "./keptSocket";
 import type { LinkEvent } from "./link";
 import { decodeBinary, decodeJson, FrameError, layoutOf, type Batch, type Layout } from "./telemetry";
 
-export const PING_PERIOD_MS = 1000;
-/** No word from the server for this long: the socket is dead even where the network has not said so. */
-export const SILENCE_MS = 5000;
 /** A server that has a record to read before it says hello is given this: to try again would begin that anew. */
 export const RECORD_MS = 60_000;
-
-/** Delay before attempt `n` (1, 2, ...): doubles from 250 ms to 5 s, spread so that consoles do not return in step. */
-export function backoffMs(attempt: number, random: number): number {
-  return Math.min(5000, 250 * 2 ** (attempt - 1)) * (0.75 + 0.5 * random);
-}
-
-/** The parts of WebSocket that this needs, so that a test can stand in for the network. */
-export interface Socket {
-  binaryType: string;
-  onopen: (() => void) | null;
-  onmessage: ((event: { data: unknown }) => void) | null;
-  onclose: ((event: { code: number; reason: string }) => void) | null;
-  send(text: string): void;
-  close(): void;
-}
-
-export interface Surroundings {
-  open: (url: string) => Socket;
-  now: () => number;
-  random: () => number;
-  setTimeout: (run: () => void, ms: number) => number;
-  clearTimeout: (id: number) => void;
-}
-
-export const BROWSER: Surroundings = {
-  open: (url) => new WebSocket(url) as unknown as Socket,
-  now: () => performance.now(),
-  random: () => Math.random(),
-  setTimeout: (run, ms) => window.setTimeout(run, ms),
-  clearTimeout: (id) => window.clearTimeout(id),
-};
 
 export interface Listener {
   link: (event: LinkEvent) => void;
@@ -64,47 +31,36 @@ export type Connect = (url: string, listener: Listener, helloMs?: number) => Con
 export const connect: Connect = (url, listener, helloMs) => new Stream(url, listener, BROWSER, 30, "binary", helloMs);
 
 export class Stream {
-  #socket: Socket | null = null;
+  readonly #socket: KeptSocket;
   #layout: Layout | null = null;
-  #attempt = 0;
-  #timers = new Set<number>();
-  #heardAt = 0;
-  #closed = false;
 
   constructor(
-    private readonly url: string,
+    url: string,
     private readonly listener: Listener,
     private readonly around: Surroundings = BROWSER,
     private readonly rateHz = 30,
     private readonly encoding: Subscribe["encoding"] = "binary",
     /** How long the server may take to say hello. */
-    private readonly helloMs = SILENCE_MS,
+    helloMs = SILENCE_MS,
   ) {
-    this.#connect();
+    const socket = {
+      connecting: () => this.listener.link({ type: "connecting" }),
+      received: (data: unknown) => this.#receive(data),
+      lost: (reason: string) => {
+        this.#layout = null;
+        this.listener.link({ type: "closed", reason });
+      },
+    };
+    this.#socket = new KeptSocket(url, socket, around, helloMs);
   }
 
   close(): void {
-    this.#closed = true;
-    this.#drop();
+    this.#socket.close();
   }
 
   /** Moves the clock of a replay. */
   control(message: PlaybackControl): void {
-    if (this.#layout) this.#socket?.send(JSON.stringify(message));
-  }
-
-  #connect(): void {
-    this.listener.link({ type: "connecting" });
-    const socket = this.around.open(this.url);
-    socket.binaryType = "arraybuffer";
-    this.#socket = socket;
-    this.#heardAt = this.around.now();
-    socket.onmessage = ({ data }) => {
-      this.#heardAt = this.around.now();
-      this.#receive(data);
-    };
-    socket.onclose = ({ code, reason }) => this.#lost(reason || `connection closed (${code})`);
-    this.#watch();
+    if (this.#layout) this.#socket.send(message);
   }
 
   #receive(data: unknown): void {
@@ -128,7 +84,6 @@ export class Stream {
           throw new FrameError(`the server speaks ${spoken}, this console ${STREAM_SCHEMA}: reload the page`);
         }
         this.#layout = layoutOf(message.record);
-        this.#attempt = 0;
         this.listener.link({ type: "opened", session: message.session });
         if (message.replay) this.listener.replay?.(message.replay);
         const subscribe: Subscribe = {
@@ -139,8 +94,8 @@ export class Stream {
           every_sample: false,
           since_seq: null,
         };
-        this.#socket?.send(JSON.stringify(subscribe));
-        this.#ping();
+        this.#socket.send(subscribe);
+        this.#socket.settle();
         break;
       }
       case "session":
@@ -176,46 +131,5 @@ export class Stream {
       nowMs: this.around.now(),
     });
     this.listener.batch(batch);
-  }
-
-  #ping(): void {
-    this.#socket?.send(JSON.stringify({ type: "ping", t: this.around.now() }));
-    this.#later(() => this.#ping(), PING_PERIOD_MS);
-  }
-
-  #watch(): void {
-    this.#later(() => {
-      if (this.around.now() - this.#heardAt > (this.#layout ? SILENCE_MS : this.helloMs))
-        this.#lost("no word from the server");
-      else this.#watch();
-    }, PING_PERIOD_MS);
-  }
-
-  #lost(reason: string): void {
-    if (this.#closed) return;
-    this.#drop();
-    this.listener.link({ type: "closed", reason });
-    this.#attempt++;
-    this.#later(() => this.#connect(), backoffMs(this.#attempt, this.around.random()));
-  }
-
-  #drop(): void {
-    for (const id of this.#timers) this.around.clearTimeout(id);
-    this.#timers.clear();
-    const socket = this.#socket;
-    this.#socket = null;
-    this.#layout = null;
-    if (socket) {
-      socket.onmessage = socket.onclose = null;
-      socket.close();
-    }
-  }
-
-  #later(run: () => void, ms: number): void {
-    const id = this.around.setTimeout(() => {
-      this.#timers.delete(id);
-      run();
-    }, ms);
-    this.#timers.add(id);
   }
 }

@@ -1,7 +1,7 @@
 /** Jobs of the server: their list, read again while any of them is under way. */
 import type { Plan } from "../contract/types";
 import { ApiError, messageOf } from "../net/errors";
-import { backoffMs } from "../net/stream";
+import { backoffMs } from "../net/keptSocket";
 
 export interface Job {
   id: string;

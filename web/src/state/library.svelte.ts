@@ -2,7 +2,7 @@
 import type { Comparison, Convention, Health, Method, Plan, RemedyKind, Rig, Run, Trajectory } from "../contract/types";
 import type { Api } from "../net/api";
 import { messageOf } from "../net/errors";
-import { backoffMs } from "../net/stream";
+import { backoffMs } from "../net/keptSocket";
 import { Jobs } from "./jobs.svelte";
 
 export class Library {

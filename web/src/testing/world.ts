@@ -1,4 +1,4 @@
-import type { Socket, Surroundings } from "../net/stream";
+import type { Socket, Surroundings } from "../net/keptSocket";
 
 /** A network and a clock in memory. */
 export class World {

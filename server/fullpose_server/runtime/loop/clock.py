@@ -71,6 +71,25 @@ class SystemClock:
         time.sleep(seconds)
 
 
+class SteppedClock:
+    """Moved by its owner alone, `now` in [ns]: a minute of the loop takes a second, in tests and benches."""
+
+    def __init__(self) -> None:
+        self.now = 1_000_000_000_000
+
+    def monotonic_ns(self) -> int:
+        """Made up [ns]."""
+        return self.now
+
+    def wall_ns(self) -> int:
+        """Made up [ns]."""
+        return 1_700_000_000_000_000_000 + self.now
+
+    def sleep(self, seconds: float) -> None:
+        """Moves on by exactly so long."""
+        self.now += round(seconds * 1e9)
+
+
 def seconds(clock: Clock) -> float:
     """Monotonic time [s]."""
     return clock.monotonic_ns() / 1e9

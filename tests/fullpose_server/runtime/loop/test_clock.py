@@ -5,16 +5,15 @@ import time
 import pytest
 
 from fullpose_server.runtime.loop import clock
-from fullpose_server.runtime.loop.clock import Deadlines
-from tests.support.made_up_clock import MadeUpClock
+from fullpose_server.runtime.loop.clock import Deadlines, SteppedClock
 
 
 @pytest.fixture
-def fake() -> MadeUpClock:
-    return MadeUpClock()
+def fake() -> SteppedClock:
+    return SteppedClock()
 
 
-def test_work_does_not_shift_the_deadlines(fake: MadeUpClock) -> None:
+def test_work_does_not_shift_the_deadlines(fake: SteppedClock) -> None:
     deadlines = Deadlines(1_000_000, fake)
     begun = fake.now
     for tick in range(1, 100):
@@ -23,7 +22,7 @@ def test_work_does_not_shift_the_deadlines(fake: MadeUpClock) -> None:
         fake.now += 300_000 + tick  # work
 
 
-def test_missed_deadlines_are_counted_and_not_caught_up(fake: MadeUpClock) -> None:
+def test_missed_deadlines_are_counted_and_not_caught_up(fake: SteppedClock) -> None:
     deadlines = Deadlines(1_000_000, fake)
     first, _, _ = deadlines.wait()
     fake.now += 3_400_000
@@ -33,7 +32,7 @@ def test_missed_deadlines_are_counted_and_not_caught_up(fake: MadeUpClock) -> No
     assert (now - first, lateness, missed) == (4_000_000, 0, 0)
 
 
-def test_a_restart_forgets_the_pause(fake: MadeUpClock) -> None:
+def test_a_restart_forgets_the_pause(fake: SteppedClock) -> None:
     deadlines = Deadlines(1_000_000, fake)
     deadlines.wait()
     fake.now += 700_000_000
