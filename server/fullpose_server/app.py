@@ -17,6 +17,7 @@ from fullpose_server.api.origin import OriginGuard
 from fullpose_server.api.paths import API
 from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.api.routes import (
+    alarms,
     audit,
     compare,
     health,
@@ -41,7 +42,23 @@ from fullpose_server.settings import Settings
 from fullpose_server.version import VERSION
 from fullpose_server.wiring import serving
 
-ROUTES = (rigs, trajectories, plans, compare, sessions, stop, scene, stream, live, replay, solve, runs, audit, health)
+ROUTES = (
+    rigs,
+    trajectories,
+    plans,
+    compare,
+    sessions,
+    stop,
+    scene,
+    stream,
+    live,
+    replay,
+    solve,
+    runs,
+    alarms,
+    audit,
+    health,
+)
 DESCRIPTION = (
     "Flies attitude trajectories on four-axis flight motion simulators. Degrees and seconds; frames in the order base, "
     "outer, middle, inner; quaternions w, x, y, z from reference (north, up, east) to body (nose, up, right wing)."

@@ -52,6 +52,8 @@ class Settings(BaseSettings):
     disk_reserve_bytes: int = Field(default=256 * MIB, ge=0)  # less left: uploads, plans and exports are refused
     keep_runs_days: float | None = Field(default=None, gt=0.0)  # older records go; None: they stay. Pinned ones stay
     keep_runs_bytes: Positive | None = None  # of all records together: beyond it the oldest go
+    keep_alarms_days: float | None = Field(default=None, gt=0.0)  # older alarms leave the history; None: they stay
+    keep_alarms: Positive | None = 100_000  # of all rigs together: beyond it the oldest go
     rig_rate_hz: float = Field(default=1000.0, ge=100.0, le=4000.0)  # as `RigConfig` has it
     live_udp_ports: dict[str, Port] = {}  # rig name to the port where its live source is heard, on loopback
     live_delay_ms: float = Field(

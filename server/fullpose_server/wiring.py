@@ -2,8 +2,10 @@
 
 import asyncio
 import fcntl
+import logging
 import os
 import shutil
+import time
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
@@ -27,10 +29,14 @@ from fullpose_server.planning.upkeep import Upkeep
 from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
 from fullpose_server.runtime.recording.retention import Retention, sweep
 from fullpose_server.runtime.recording.run_index import RunFiles
+from fullpose_server.runtime.supervisor.alarm_watch import AlarmWatch
 from fullpose_server.runtime.supervisor.registry import RigHosts
 from fullpose_server.scene.on_demand import ScenesOnDemand
 from fullpose_server.scene.scenes import SceneServer
+from fullpose_server.session.alarms import Shelf
 from fullpose_server.settings import Settings
+from fullpose_server.store.alarm_trail import AlarmTrail
+from fullpose_server.store.alarms import AlarmHistory
 from fullpose_server.store.audit import AuditLog
 from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
@@ -38,6 +44,8 @@ from fullpose_server.store.disk import Disk
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.quarantine import Quarantine
 from fullpose_server.store.trajectories import TrajectoryStore
+
+log = logging.getLogger(__name__)
 
 
 class DataDirInUseError(ServerError):
@@ -69,6 +77,8 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         served = await asyncio.to_thread(_build, settings, folder, database, scenes, quarantine)
         services = served.services
         stack.push_async_callback(asyncio.to_thread, services.trail.close)
+        stack.push_async_callback(asyncio.to_thread, services.alarm_trail.close)
+        stack.push_async_callback(services.alarm_watch.close)
         stack.callback(scenes.close)
         services.offload.start()
         stack.push_async_callback(services.offload.close)
@@ -100,7 +110,8 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
     plans = PlanStore(database, folder / "plans")
     run_folder = folder / "runs"
     run_folder.mkdir(exist_ok=True)
-    process_of = _RigProcess(settings, rigs, run_folder)
+    alarms = AlarmHistory(database)
+    process_of = _RigProcess(settings, rigs, run_folder, alarms)
     hosts = RigHosts(rigs, process_of.config, process_of.directory)
 
     def latest(rig: str) -> Any:
@@ -109,8 +120,8 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         return None if rows is None else rows[0]
 
     audit = AuditLog(database)
+    alarm_trail = AlarmTrail(alarms)
     runs, comparisons = RunFiles(run_folder), Comparisons(folder / "comparisons", quarantine)
-    retention = Retention(settings.keep_runs_days, settings.keep_runs_bytes)
     on_demand = ScenesOnDemand(scenes, rigs, latest)
     services = Services(
         settings=settings,
@@ -122,6 +133,9 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         comparisons=comparisons,
         audit=audit,
         trail=AuditTrail(audit),
+        alarms=alarms,
+        alarm_trail=alarm_trail,
+        alarm_watch=AlarmWatch(hosts, alarm_trail),
         hosts=hosts,
         runs=runs,
         scenes=on_demand,
@@ -130,11 +144,19 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         quarantine=quarantine,
         upkeep=Upkeep(
             partial(scrub, plans, trajectories, comparisons, runs, quarantine),
-            partial(sweep, runs, retention) if retention.on else None,
+            partial(_retain, settings, runs, alarms),
         ),
         uploads=_emptied(folder / "uploads"),
     )
     return Served(services, on_demand)
+
+
+def _retain(settings: Settings, runs: RunFiles, alarms: AlarmHistory) -> None:
+    """Let go of what is not to be kept any longer."""
+    rule = Retention(settings.keep_runs_days, settings.keep_runs_bytes)
+    if rule.on:
+        sweep(runs, rule)
+    alarms.sweep(settings.keep_alarms_days, settings.keep_alarms, time.time())
 
 
 def _emptied(folder: Path) -> Path:
@@ -158,6 +180,7 @@ class _RigProcess:
     settings: Settings
     rigs: RigStore
     runs: Path
+    alarms: AlarmHistory
 
     def directory(self, rig: str) -> Path:
         """Where the process has its own files."""
@@ -177,8 +200,17 @@ class _RigProcess:
                 delay_ms=settings.live_delay_ms,
                 extrapolate_ms=settings.live_extrapolate_ms,
             ),
+            shelves=self._shelves(rig),
             **vars(entry.operating),
         )
+
+    def _shelves(self, rig: str) -> tuple[Shelf, ...]:
+        """Those that were put up in an earlier process; none where they cannot be read: a rig must be operable."""
+        try:
+            return self.alarms.shelves(rig, time.time())
+        except ServerError as error:
+            log.warning("rig %s starts without the shelves of before: %s", rig, error)
+            return ()
 
 
 @dataclass(frozen=True)

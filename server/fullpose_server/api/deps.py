@@ -20,8 +20,11 @@ from fullpose_server.planning.comparisons import Comparisons
 from fullpose_server.planning.plan_queue import PlanQueue
 from fullpose_server.planning.upkeep import Upkeep
 from fullpose_server.runtime.recording.run_index import RunFiles
+from fullpose_server.runtime.supervisor.alarm_watch import AlarmWatch
 from fullpose_server.runtime.supervisor.registry import RigHosts
 from fullpose_server.settings import Settings
+from fullpose_server.store.alarm_trail import AlarmTrail
+from fullpose_server.store.alarms import AlarmHistory
 from fullpose_server.store.audit import AuditLog
 from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
@@ -57,6 +60,9 @@ class Services:
     comparisons: Comparisons
     audit: AuditLog
     trail: AuditTrail
+    alarms: AlarmHistory
+    alarm_trail: AlarmTrail
+    alarm_watch: AlarmWatch
     hosts: RigHosts
     runs: RunFiles
     scenes: Scenes

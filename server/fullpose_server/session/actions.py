@@ -21,13 +21,15 @@ class Given(Generic[L, M]):
     """What goes with a command, made ready: what `load` binds, the move of move, home, jog and start.
 
     `binding` goes with arm too, where the caller names the pair. `alarms` are the numbers that `acknowledge` is about
-    (None: all), `shelf` is what `shelve` puts up and `unshelve` takes away, by its code and frame.
+    (None: all) and `time_s` [s, Unix] is when; `shelf` is what `shelve` puts up and `unshelve` takes away, by its code
+    and frame.
     """
 
     binding: Binding | None = None
     load: L | None = None
     move: M | None = None
     alarms: frozenset[int] | None = None
+    time_s: float | None = None
     shelf: Shelf | None = None
 
 

@@ -38,6 +38,7 @@ class Alarm:
     unit: str | None = None
     first: bool = False
     acknowledged_by: str | None = None
+    acknowledged_s: float | None = None  # Unix time of that
     count: int = 1
     last_time_s: float | None = None  # of the newest occurrence, where there was more than one
     shelved: bool = False  # it was raised on a shelf: in the history alone
@@ -138,12 +139,17 @@ class AlarmBook:
         kept = tuple(s for s in self.shelves if now_s < s.until_s)
         return self if len(kept) == len(self.shelves) else replace(self, shelves=kept)
 
-    def acknowledged(self, who: str, numbers: frozenset[int] | None = None) -> "AlarmBook":
-        """The book after `who` has seen these alarms (None: all). Warnings leave, faults stay until `cleared`."""
+    def acknowledged(self, who: str, numbers: frozenset[int] | None = None, time_s: float | None = None) -> "AlarmBook":
+        """The book after `who` has seen these alarms (None: all) at `time_s` [s, Unix].
+
+        Warnings leave, faults stay until `cleared`.
+        """
 
         def seen(alarm: Alarm) -> Alarm:
             named = numbers is None or alarm.number in numbers
-            return replace(alarm, acknowledged_by=who) if named and alarm.acknowledged_by is None else alarm
+            if not named or alarm.acknowledged_by is not None:
+                return alarm
+            return replace(alarm, acknowledged_by=who, acknowledged_s=time_s)
 
         marked = {alarm.number: seen(alarm) for alarm in self.standing}
         standing = tuple(a for a in marked.values() if a.severity is not Severity.WARNING or a.acknowledged_by is None)

@@ -9,7 +9,7 @@ from typing import Generic
 
 from fullpose_server.session import table
 from fullpose_server.session.actions import Given, L, M, Order, order_of
-from fullpose_server.session.alarms import Alarm, AlarmBook, Severity
+from fullpose_server.session.alarms import Alarm, AlarmBook, Severity, Shelf
 from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import BindingError, IllegalCommandError, NotReadyError, SessionError
 from fullpose_server.session.lease import Lease, LeaseBook, LeaseToken
@@ -53,14 +53,17 @@ class Silence:
 class SessionMachine(Generic[L, M]):
     """One rig's session, of loads L and moves M. Not thread-safe: the rig process owns it."""
 
-    def __init__(self, rig: str, rig_hash: str, policy: SilencePolicy | None = None) -> None:
+    def __init__(
+        self, rig: str, rig_hash: str, policy: SilencePolicy | None = None, shelves: tuple[Shelf, ...] = ()
+    ) -> None:
+        """`shelves`: of an earlier session of the rig; they last until their end."""
         policy = policy or SilencePolicy()
         self.rig = rig
         self.rig_hash = rig_hash
         self.state = State.DISCONNECTED
         self.revision = 0
         self.binding: Binding | None = None
-        self.alarms = AlarmBook()
+        self.alarms = AlarmBook(shelves=shelves)
         self.linked = False
         self.moving = False
         self._flight = False  # whether positioning leads to a flight
@@ -212,7 +215,7 @@ class SessionMachine(Generic[L, M]):
     def _alarms_after(self, command: Command, who: str, given: Given[L, M]) -> AlarmBook:
         """What becomes of the alarms. Raises `NotReadyError` where `command` needs a shelf."""
         if command is Command.ACKNOWLEDGE:
-            seen = self.alarms.acknowledged(who, given.alarms)
+            seen = self.alarms.acknowledged(who, given.alarms, given.time_s)
             # Where no reset comes, what stood on would take `first` from the next fault.
             return seen if self.state in table.LATCHED else seen.cleared()
         if command not in (Command.SHELVE, Command.UNSHELVE):

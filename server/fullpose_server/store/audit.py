@@ -1,5 +1,7 @@
 """The audit log: every command, accepted or refused, with who, lease, state before and after."""
 
+from collections.abc import Sequence
+
 from sqlalchemy import select
 
 from fullpose_server.store.audit_entry import AuditEntry
@@ -13,10 +15,10 @@ class AuditLog:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def write(self, entry: AuditEntry) -> None:
-        """Add one line."""
+    def write(self, entries: Sequence[AuditEntry]) -> None:
+        """Add lines, all or none."""
         with self._database.begin() as session:
-            session.add(
+            session.add_all(
                 AuditRow(
                     at=entry.at,
                     who=entry.who,
@@ -30,6 +32,7 @@ class AuditLog:
                     accepted=entry.accepted,
                     detail=entry.detail,
                 )
+                for entry in entries
             )
 
     def all(self, rig: str | None, before: int | None, limit: int) -> list[AuditRow]:

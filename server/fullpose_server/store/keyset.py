@@ -14,9 +14,9 @@ class Key(NamedTuple):
     id: str
 
 
-def newest_first(query: _Query, row: Any, key: Any, before: Key | None, limit: int | None) -> _Query:
-    """The query's rows in order of `row.created` and `key`, those after the one at `before`, at most `limit`."""
+def newest_first(query: _Query, moment: Any, key: Any, before: Key | None, limit: int | None) -> _Query:
+    """The query's rows in order of the columns `moment` and `key`, those after the one at `before`, at most `limit`."""
     if before is not None:
-        query = query.where(tuple_(row.created, key) < tuple_(literal(before.created), literal(before.id)))
-    query = query.order_by(row.created.desc(), key.desc())
+        query = query.where(tuple_(moment, key) < tuple_(literal(before.created), literal(before.id)))
+    query = query.order_by(moment.desc(), key.desc())
     return query if limit is None else query.limit(limit)

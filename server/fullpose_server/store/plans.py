@@ -79,7 +79,7 @@ class PlanStore:
     ) -> list[tuple[PlanRow, str]]:
         """Newest first, those after the plan at `before`, at most `limit`; each with its flight's name."""
         query = cast(Select[Any], select(PlanRow, TrajectoryRow.name).join(TrajectoryRow))
-        query = newest_first(query, PlanRow, PlanRow.id, before, limit)
+        query = newest_first(query, PlanRow.created, PlanRow.id, before, limit)
         if trajectory is not None:
             query = query.where(PlanRow.trajectory == trajectory)
         if rig is not None:

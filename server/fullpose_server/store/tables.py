@@ -75,7 +75,7 @@ class AuditRow(Table):
     """One command, accepted or refused."""
 
     __tablename__ = "audit"
-    __table_args__ = (Index("ix_audit_rig", "rig"),)
+    __table_args__ = (Index("ix_audit_rig", "rig", "id"),)
 
     id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
     at: Mapped[float] = mapped_column(Float)
@@ -89,3 +89,49 @@ class AuditRow(Table):
     state_after: Mapped[str] = mapped_column(String(16))
     accepted: Mapped[bool]
     detail: Mapped[str | None]
+
+
+class AlarmRow(Table):
+    """An alarm of a rig, as `session.alarms.Alarm` has it; `id` is its own over restarts of the rig's process."""
+
+    __tablename__ = "alarms"
+    __table_args__ = (
+        Index("ix_alarms_time", "time_s", "id"),
+        Index("ix_alarms_rig", "rig", "time_s", "id"),
+        Index("ix_alarms_severity", "severity", "time_s", "id"),
+        Index("ix_alarms_code", "code", "time_s", "id"),
+    )
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    rig: Mapped[str] = mapped_column(String(64))
+    number: Mapped[int] = mapped_column(Integer)
+    code: Mapped[str] = mapped_column(String(64))
+    severity: Mapped[str] = mapped_column(String(16))
+    message: Mapped[str] = mapped_column(String)
+    time_s: Mapped[float] = mapped_column(Float)
+    frame: Mapped[str | None] = mapped_column(String(16))
+    value: Mapped[float | None] = mapped_column(Float)
+    limit: Mapped[float | None] = mapped_column(Float)
+    unit: Mapped[str | None] = mapped_column(String(16))
+    first: Mapped[bool]
+    acknowledged_by: Mapped[str | None] = mapped_column(String(128))
+    acknowledged_s: Mapped[float | None] = mapped_column(Float)
+    count: Mapped[int] = mapped_column(Integer)
+    last_time_s: Mapped[float | None] = mapped_column(Float)
+    shelved: Mapped[bool]
+
+
+class ShelfRow(Table):
+    """A shelf of a rig, as `session.alarms.Shelf` has it: for the next process of the rig."""
+
+    __tablename__ = "shelves"
+    __table_args__ = (Index("ix_shelves_rig", "rig"),)
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    rig: Mapped[str] = mapped_column(String(64))
+    code: Mapped[str] = mapped_column(String(64))
+    frame: Mapped[str | None] = mapped_column(String(16))
+    since_s: Mapped[float] = mapped_column(Float)
+    until_s: Mapped[float] = mapped_column(Float)
+    by: Mapped[str] = mapped_column(String(128))
+    reason: Mapped[str] = mapped_column(String)

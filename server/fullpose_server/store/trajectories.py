@@ -9,11 +9,9 @@ from uuid import uuid4
 
 from sqlalchemy import func, select
 
-from fullpose._typing import Array
 from fullpose_server.errors import InUseError, NotFoundError
 from fullpose_server.formats import durable
-from fullpose_server.formats.flight_folder import FlightFacts, read_arrays, write_flight
-from fullpose_server.formats.trajectory import Trajectory
+from fullpose_server.formats.flight_folder import FlightFacts
 from fullpose_server.store.database import Database
 from fullpose_server.store.keyset import Key, newest_first
 from fullpose_server.store.tables import PlanRow, TrajectoryRow
@@ -29,17 +27,6 @@ class TrajectoryStore:
         root.mkdir(parents=True, exist_ok=True)
         for left in root.glob(".new-*"):  # an add that a crash cut off
             shutil.rmtree(left, ignore_errors=True)
-
-    def add(
-        self, trajectory: Trajectory, name: str, source: Path, source_sha256: str, source_format: str
-    ) -> tuple[TrajectoryRow, bool]:
-        """Store a flight and its source file, which is moved away. Returns its row and whether it is new."""
-        draft = self.draft()
-        try:
-            facts = write_flight(draft, trajectory)
-            return self.adopt(draft, facts, name, source, source_sha256, source_format)
-        finally:
-            shutil.rmtree(draft, ignore_errors=True)
 
     def draft(self) -> Path:
         """A new folder for the arrays of a flight; who asked for it removes what is left of it."""
@@ -82,16 +69,12 @@ class TrajectoryStore:
 
     def all(self, before: Key | None = None, limit: int | None = None) -> list[TrajectoryRow]:
         """Newest first, those after the row at `before`, at most `limit`."""
-        query = newest_first(select(TrajectoryRow), TrajectoryRow, TrajectoryRow.sha256, before, limit)
+        query = newest_first(select(TrajectoryRow), TrajectoryRow.created, TrajectoryRow.sha256, before, limit)
         with self._database.begin() as session:
             return list(session.scalars(query))
 
-    def arrays(self, sha256: str) -> tuple[Array, Array]:
-        """time (n,) [s] and q (n, 4), mapped from disk. Raises `NotFoundError`, `DamagedError`."""
-        return read_arrays(self.folder(sha256), self.get(sha256).samples)
-
     def folder(self, sha256: str) -> Path:
-        """Where the arrays are."""
+        """Where the arrays are (`formats.flight_folder` reads them)."""
         return self._root / sha256
 
     def remove(self, sha256: str) -> None:

@@ -38,8 +38,8 @@ def test_the_newest_revision_is_the_one_that_is_skipped() -> None:
 def test_an_older_database_is_brought_up(tmp_path: Path) -> None:
     database = Database(tmp_path / "a.db")
     with database.engine.begin() as connection:
-        for table in ("plans", "trajectories", "audit"):
-            connection.execute(text(f"DROP TABLE {table}"))
+        for table in reversed(Table.metadata.sorted_tables):
+            connection.execute(text(f"DROP TABLE {table.name}"))
         connection.execute(text("DELETE FROM alembic_version"))
     database.close()
     database = Database(tmp_path / "a.db")

@@ -1,6 +1,26 @@
 // Generated from docs/openapi.json by `npm run generate`. Do not edit.
 
 export interface paths {
+    "/api/v1/alarms": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Alarms
+         * @description Alarms of all rigs, newest first by their first occurrence, a page at a time; all of them outlive restarts.
+         */
+        get: operations["list_alarms_api_v1_alarms_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/audit": {
         parameters: {
             query?: never;
@@ -632,6 +652,11 @@ export interface components {
         AlarmOut: {
             /** Acknowledged By */
             acknowledged_by?: string | null;
+            /**
+             * Acknowledged S
+             * @description Seconds since 1970, of that
+             */
+            acknowledged_s?: number | null;
             /** Code */
             code: string;
             /**
@@ -664,6 +689,69 @@ export interface components {
              * @default false
              */
             shelved: boolean;
+            /**
+             * Time S
+             * @description Seconds since 1970, of the first occurrence
+             */
+            time_s: number;
+            /** Unit */
+            unit?: string | null;
+            /** Value */
+            value?: number | null;
+        };
+        /**
+         * AlarmRecordOut
+         * @description An alarm of the history; `number` is its process's count, `id` its own over all restarts.
+         */
+        AlarmRecordOut: {
+            /** Acknowledged By */
+            acknowledged_by?: string | null;
+            /**
+             * Acknowledged S
+             * @description Seconds since 1970, of that
+             */
+            acknowledged_s?: number | null;
+            /** Code */
+            code: string;
+            /**
+             * Count
+             * @default 1
+             */
+            count: number;
+            /**
+             * First
+             * @default false
+             */
+            first: boolean;
+            /** Frame */
+            frame?: ("base" | "outer" | "middle" | "inner") | null;
+            /** Id */
+            id: string;
+            /**
+             * Last Time S
+             * @description Of the newest occurrence, where there was more than one
+             */
+            last_time_s?: number | null;
+            /** Limit */
+            limit?: number | null;
+            /** Message */
+            message: string;
+            /** Number */
+            number: number;
+            /** Rig */
+            rig: string;
+            severity: components["schemas"]["Severity"];
+            /**
+             * Shelved
+             * @description It was raised while shelved: it never stood
+             * @default false
+             */
+            shelved: boolean;
+            /**
+             * Standing
+             * @description Whether it stands now
+             */
+            standing: boolean;
             /**
              * Time S
              * @description Seconds since 1970, of the first occurrence
@@ -3106,6 +3194,78 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
+    list_alarms_api_v1_alarms_get: {
+        parameters: {
+            query?: {
+                /** @description Of the link to the next page */
+                before?: string | null;
+                code?: string | null;
+                /** @description First raised then or later */
+                from?: string | null;
+                /** @description Rows of the page; 100 where not given */
+                limit?: number | null;
+                rig?: string | null;
+                severity?: components["schemas"]["Severity"] | null;
+                /** @description Those that stand, or those that do not */
+                standing?: boolean | null;
+                /** @description First raised before */
+                to?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description The next page, `<path>; rel="next"`, where there is one */
+                    Link?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AlarmRecordOut"][];
+                };
+            };
+            /** @description A foreign page, or a foreign name of this server */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_audit_api_v1_audit_get: {
         parameters: {
             query?: {

@@ -53,7 +53,7 @@ def _wrong(services: Services) -> list[str]:
         found.append("the planner has stopped")
     if services.comparisons.status == "stopped":
         found.append("comparisons are made no more")
-    found += services.trail.faults()
+    found += services.trail.faults() + services.alarm_trail.faults() + services.alarm_watch.faults()
     found += services.front.faults()
     for host in services.hosts.all():
         state = host.snapshot().health

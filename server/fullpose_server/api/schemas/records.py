@@ -6,7 +6,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from fullpose_server.api.schemas.base import Wire
-from fullpose_server.api.schemas.session import RigHealth
+from fullpose_server.api.schemas.session import AlarmOut, RigHealth
 from fullpose_server.planning.runner import RunnerStatus
 from fullpose_server.session.states import State
 
@@ -52,6 +52,14 @@ class AuditOut(Wire):
     state_after: State
     accepted: bool
     detail: str | None
+
+
+class AlarmRecordOut(AlarmOut):
+    """An alarm of the history; `number` is its process's count, `id` its own over all restarts."""
+
+    id: str
+    rig: str
+    standing: bool = Field(description="Whether it stands now")
 
 
 class ServerLimits(Wire):

@@ -180,6 +180,7 @@ class AlarmOut(Wire):
     unit: str | None = None
     first: bool = False
     acknowledged_by: str | None = None
+    acknowledged_s: float | None = Field(default=None, description="Seconds since 1970, of that")
     count: int = 1
     last_time_s: float | None = Field(
         default=None, description="Of the newest occurrence, where there was more than one"

@@ -17,6 +17,7 @@ from fullpose_server.operating import (
     check_not_negative,
     check_positive,
 )
+from fullpose_server.session.alarms import Shelf
 
 # What rig files say too is in `fullpose_server.operating`, below the store; the loop finds all it needs here.
 __all__ = [
@@ -61,6 +62,7 @@ class RigConfig(OperatingConfig):
     exit_idle_s: float = 120.0  # without a server and at rest, the process ends by itself
     live: LiveConfig = LiveConfig()
     after_loss: str | None = None  # why an earlier process of this rig died
+    shelves: tuple[Shelf, ...] = ()  # that were put up in it
 
     def __post_init__(self) -> None:
         if not self.name:

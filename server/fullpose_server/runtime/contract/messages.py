@@ -87,6 +87,7 @@ class Published:
     """What the loop publishes at every revision."""
 
     rig: str
+    life: str  # of the process: each numbers its alarms from 1
     state: str
     revision: int
     allowed: list[str]
@@ -139,6 +140,7 @@ class Snapshot:
     """A rig's session as a whole."""
 
     rig: str
+    life: str  # of the process
     state: str
     revision: int
     allowed: list[str]

@@ -167,7 +167,7 @@ class CommandHandler:
             case Command.SHELVE | Command.UNSHELVE:
                 return GivenOf(shelf=orders.shelf_of(request.args, request.who, p.clock.wall_ns() / 1e9))
             case Command.ACKNOWLEDGE:
-                return GivenOf(alarms=orders.alarms_of(request.args))
+                return GivenOf(alarms=orders.alarms_of(request.args), time_s=p.clock.wall_ns() / 1e9)
             case _:
                 pass
         return GivenOf()

@@ -61,3 +61,4 @@ class Parts:
     log: EventLog
     state: LoopState
     realtime: str = ""  # what the system granted, in words
+    life: str = ""  # of this process, unlike any other's

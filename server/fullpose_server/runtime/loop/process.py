@@ -12,6 +12,7 @@ import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 
@@ -64,7 +65,7 @@ def assemble(settings: config.RigConfig, drive: Drive, shared: Shared, live: Liv
     return Parts(
         config=settings,
         clock=ticks,
-        machine=SessionMachine(rig.name, rig_hash(rig), settings.owner),
+        machine=SessionMachine(rig.name, rig_hash(rig), settings.owner, settings.shelves),
         drive=drive,
         motion=Motion(rig, settings.motion, settings.rate_hz),
         guard=Guard(rig, settings.guard, 1.0 / settings.rate_hz),
@@ -113,7 +114,7 @@ def main() -> int:
             return 2
         links = open_links(paths, settings.live)
         live = LiveSource(settings.rig, settings.live, 1.0 / settings.rate_hz, links, partial(clock.seconds, ticks))
-        parts = replace(assemble(settings, drive, shared, live, ticks), realtime=realtime)
+        parts = replace(assemble(settings, drive, shared, live, ticks), realtime=realtime, life=uuid4().hex)
         leisure = Leisure(recorder, parts.log, shared.header, settings.exit_idle_s, clock.seconds(ticks))
         loop = ControlLoop(parts, partial(ControlServer, paths), leisure)
         signal.signal(signal.SIGTERM, lambda *_: loop.terminate())

@@ -60,6 +60,7 @@ class Publisher:
         hold_s = p.config.owner.hold_s
         published = messages.Published(
             rig=p.config.name,
+            life=p.life,
             state=machine.state,
             revision=machine.revision,
             allowed=[str(c) for c in machine.allowed()],

@@ -59,7 +59,7 @@ class Launcher:
             given = json.loads(self._paths.config.read_bytes())
         except (OSError, ValueError):
             given = {}
-        names = (wanted.keys() | given.keys()) - {"after_loss"}
+        names = (wanted.keys() | given.keys()) - {"after_loss", "shelves"}
         return sorted(name for name in names if wanted.get(name) != given.get(name))
 
     def status(self, pid: int) -> int | None:

@@ -180,11 +180,12 @@ class ProcessManager:
         if len(self._respawned) >= _RESPAWNS:
             return
         self._respawned.append(now)
-        lost = _loss(self._view.published(), self._launcher.status(self._view.pid))
+        last = self._view.published()
+        lost = _loss(last, self._launcher.status(self._view.pid))
         await self._detach()
         pid = self._paths.running()  # one that came up and could not be reached
         if pid is None:
-            pid = await self._launcher.spawn(replace(self._config, after_loss=lost))
+            pid = await self._launcher.spawn(replace(self._config, after_loss=lost, shelves=tuple(last.shelves)))
         await self._attach(pid)
 
 

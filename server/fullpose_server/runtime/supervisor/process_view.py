@@ -147,6 +147,7 @@ class ProcessView:
         state, can = (State.DISCONNECTED.value, []) if self._dead else (published.state, published.allowed)
         return messages.Snapshot(
             rig=published.rig,
+            life=published.life,
             state=state,
             revision=self.revision_of(published.revision),
             allowed=can,

@@ -1,12 +1,13 @@
-"""The audit follows: nobody waits for a row, and none is lost for a database that is locked for a while."""
+"""Rows that follow: nobody waits for one, and none is lost for a database that is locked for a while."""
 
 import sqlite3
 from pathlib import Path
 
 from fullpose_server.store.audit import AuditLog
 from fullpose_server.store.audit_entry import AuditEntry
-from fullpose_server.store.audit_trail import MOST, AuditTrail
+from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
+from fullpose_server.store.write_behind import BATCH, MOST
 from tests.support.waiting import until
 
 
@@ -20,17 +21,17 @@ def test_a_locked_database_holds_nobody_up_and_loses_no_row(tmp_path: Path) -> N
     trail = AuditTrail(log)
     locked = sqlite3.connect(tmp_path / "fullpose.db", isolation_level=None)
     locked.execute("BEGIN EXCLUSIVE")
-    for number in range(20):
+    for number in range(BATCH + 20):
         trail.follow(entry(number))
     told = until(trail.faults)
-    assert "20 lines wait" in told[0]
+    assert f"{BATCH + 20} lines wait" in told[0]
     assert "locked" in told[0]
     assert not trail.written(0.0)
     locked.execute("ROLLBACK")
     locked.close()
     assert trail.written(60.0)
     assert trail.faults() == []
-    assert [row.at for row in reversed(log.all(None, None, 100))] == [float(k) for k in range(20)]
+    assert [row.at for row in reversed(log.all(None, None, 1000))] == [float(k) for k in range(BATCH + 20)]
     trail.close()
     database.close()
 
