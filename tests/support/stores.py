@@ -1,15 +1,19 @@
 """Stores in a folder of their own."""
 
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from fullpose._typing import Array
 from fullpose.rig import builtin_rigs
+from fullpose_server.formats.flight_folder import read_arrays, write_flight
 from fullpose_server.formats.plan_folder import rig_hash
-from fullpose_server.formats.trajectory import Convention
+from fullpose_server.formats.trajectory import Convention, Trajectory
 from fullpose_server.formats.trajectory_file import read_trajectory
 from fullpose_server.planning.plan_request import PlanRequest
 from fullpose_server.store.database import Database
 from fullpose_server.store.plans import PlanStore
+from fullpose_server.store.tables import TrajectoryRow
 from fullpose_server.store.trajectories import TrajectoryStore
 
 RIG = builtin_rigs()["vertical-4"]
@@ -25,9 +29,18 @@ class Stores:
     def add_flight(self, text: str, name: str = "flight") -> str:
         path = self.folder / "upload"
         path.write_text(text, encoding="utf-8")
-        flight = read_trajectory(path, Convention.NUE)
-        row, _ = self.trajectories.add(flight, name, path, "0" * 64, "csv")
-        return row.sha256
+        return self.keep(read_trajectory(path, Convention.NUE), path, name)[0].sha256
+
+    def keep(self, flight: Trajectory, source: Path, name: str = "flight") -> tuple[TrajectoryRow, bool]:
+        """Store a flight as the server does: its arrays written first, then taken in."""
+        draft = self.trajectories.draft()
+        try:
+            return self.trajectories.adopt(draft, write_flight(draft, flight), name, source, "0" * 64, "csv")
+        finally:
+            shutil.rmtree(draft, ignore_errors=True)
+
+    def arrays(self, sha256: str) -> tuple[Array, Array]:
+        return read_arrays(self.trajectories.folder(sha256), self.trajectories.get(sha256).samples)
 
     def add_plan(self, trajectory: str, method: str = "exact", rate_hz: float = 200.0) -> str:
         row = self.plans.add(

@@ -1,6 +1,5 @@
 """Every error as application/problem+json (RFC 9457), with a stable code in its type."""
 
-import errno
 import logging
 
 from fastapi import FastAPI, Request
@@ -12,16 +11,9 @@ from starlette.routing import Match, Mount
 
 from fullpose.errors import SolverError
 from fullpose_server.api.problems import ApiError, problem_response, validation_problem
-from fullpose_server.api.schemas.base import FieldProblem, Problem
-from fullpose_server.errors import (
-    DamagedError,
-    FileError,
-    NotFoundError,
-    ServerError,
-    StorageError,
-    StorageFullError,
-)
-from fullpose_server.formats.importers.columns import TooLargeError
+from fullpose_server.api.schemas.base import Problem
+from fullpose_server.api.told import told
+from fullpose_server.errors import ServerError
 
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 log = logging.getLogger(__name__)
@@ -38,30 +30,17 @@ class BodyError(HTTPException):
 def problem_of(error: Exception) -> Problem:
     """The document of an error; errors nobody planned for become 500 and are logged, without their text."""
     match error:
-        case ApiError() | BodyError():
+        case BodyError():
             return error.problem
         case HTTPException():
             return ApiError(error.status_code, "http", str(error.detail)).problem
         case RequestValidationError() | ValidationError():
             return validation_problem(error.errors())
-        case NotFoundError():
-            return ApiError(404, "not-found", str(error)).problem
-        case FileError():
-            status, code = (413, "too-large") if isinstance(error, TooLargeError) else (422, "file")
-            return ApiError(status, code, str(error), errors=[_file_problem(error)]).problem
-        case StorageFullError():
-            return ApiError(507, "disk-full", str(error)).problem
-        case StorageError():
-            return ApiError(503, "database", str(error)).problem
-        case DamagedError():
-            return ApiError(409, "damaged", str(error)).problem
-        case SolverError():
-            return ApiError(422, "solver-input", str(error)).problem
-        case OSError(errno=errno.ENOSPC | errno.EDQUOT):
-            return ApiError(507, "disk-full", f"the disk is full: {error.strerror}").problem
-        case _:
-            log.error("unexpected error", exc_info=error)
-            return ApiError(500, "internal", "an error of the server; its log tells more").problem
+    problem = told(error)
+    if problem is None:
+        log.error("unexpected error", exc_info=error)
+        return ApiError(500, "internal", "an error of the server; its log tells more").problem
+    return problem
 
 
 def install(app: FastAPI) -> None:
@@ -91,13 +70,3 @@ def _methods(app: FastAPI, request: Request) -> list[str]:
     if not found and request.method not in ("GET", "HEAD") and not request.url.path.startswith("/api/"):
         return ["GET", "HEAD"]  # a page of the console
     return found
-
-
-def _file_problem(error: FileError) -> FieldProblem:
-    return FieldProblem(
-        where=error.column or "file",
-        message=str(error),
-        value=error.value,
-        line=error.line,
-        expected=error.expected,
-    )

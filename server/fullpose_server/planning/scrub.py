@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from fullpose_server.errors import DamagedError
+from fullpose_server.formats.flight_folder import read_arrays
 from fullpose_server.formats.plan_folder import PlanFolder, PlanFolderError, read_plan
 from fullpose_server.planning.compare_request import REPORT
 from fullpose_server.planning.comparisons import Comparisons
@@ -24,7 +25,7 @@ def scrub(
             open_plan(plan, plans, quarantine)
     for flight in trajectories.all():
         try:
-            trajectories.arrays(flight.sha256)
+            read_arrays(trajectories.folder(flight.sha256), flight.samples)
         except DamagedError as error:
             quarantine.take("flight", flight.sha256[:16], [trajectories.folder(flight.sha256)], str(error))
             trajectories.lost(flight.sha256)

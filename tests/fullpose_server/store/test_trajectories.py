@@ -17,7 +17,7 @@ FLIGHT = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 100},{k / 10},{k
 
 def test_a_flight_comes_back_bit_by_bit(stores: Stores) -> None:
     sha256 = stores.add_flight(FLIGHT)
-    time, q = stores.trajectories.arrays(sha256)
+    time, q = stores.arrays(sha256)
     np.testing.assert_array_equal(time, np.arange(101) / 100)
     assert q.shape == (101, 4)
     row = stores.trajectories.get(sha256)
@@ -65,7 +65,7 @@ def test_one_flight_added_by_many_at_once_is_new_once(stores: Stores) -> None:
             path.write_text(text, encoding="utf-8")
             flight = read_trajectory(path, Convention.NUE)
             together.wait()
-            news.append(stores.trajectories.add(flight, "flight", path, "0" * 64, "csv")[1])
+            news.append(stores.keep(flight, path)[1])
 
         threads = [threading.Thread(target=add, args=(number,)) for number in range(6)]
         for thread in threads:
@@ -84,5 +84,5 @@ def test_a_folder_without_its_row_is_what_a_crash_left_and_is_replaced(stores: S
     left.mkdir()
     (left / "time.npy").write_bytes(b"half")
     assert stores.add_flight(FLIGHT) == sha256
-    assert stores.trajectories.arrays(sha256)[0].size == 101
+    assert stores.arrays(sha256)[0].size == 101
     assert (left / "source.csv").read_text() == FLIGHT

@@ -31,13 +31,12 @@ class Offload:
         self._longest_s = settings.max_upload_s
         program = (sys.executable, "-m", "fullpose_server.api.offload.worker", str(self._memory))
         self._workers = [WorkerProcess(program) for _ in range(PROCESSES)]
-        self._idle = list(reversed(self._workers))  # the one that was used last is taken first
-        self._free = asyncio.Semaphore(PROCESSES)
+        self._idle: asyncio.LifoQueue[WorkerProcess] = asyncio.LifoQueue()  # the one that was used last is taken first
         self._asked = 0
         self._prewarming: asyncio.Task[None] | None = None
 
     def start(self) -> None:
-        """Have the first process ready before it is needed."""
+        """Have the processes ready before they are needed; who comes earlier waits for the first."""
         self._prewarming = asyncio.create_task(self._prewarm(), name="offload prewarm")
 
     async def close(self) -> None:
@@ -54,12 +53,11 @@ class Offload:
             raise ApiError(429, "busy", f"{self._asked} uploads and batches are being worked on: try again")
         self._asked += 1
         try:
-            async with self._free:
-                worker = self._idle.pop()
-                try:
-                    return await self._answer(worker, work, request)
-                finally:
-                    self._idle.append(worker)
+            worker = await self._idle.get()
+            try:
+                return await self._answer(worker, work, request)
+            finally:
+                self._idle.put_nowait(worker)
         finally:
             self._asked -= 1
 
@@ -98,13 +96,12 @@ class Offload:
                 await worker.kill()
 
     async def _prewarm(self) -> None:
-        async with self._free:
-            worker = self._idle.pop()
+        for worker in self._workers:  # one after another: the first is ready the sooner
             try:
                 with contextlib.suppress(OSError):  # said again, by the request that needs it
                     await worker.start()
             finally:
-                self._idle.append(worker)
+                self._idle.put_nowait(worker)
 
 
 def _refusal(problem: Problem) -> ApiError:

@@ -3,7 +3,6 @@
 Nothing of what a client sends is parsed in the server's own process: neither its memory nor its event loop is at stake.
 """
 
-import errno
 import json
 import time
 from collections.abc import Mapping
@@ -15,18 +14,15 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from fullpose.errors import SolverError
 from fullpose.rig import Rig
 from fullpose_server.api.attitudes import attitudes, limited_list
-from fullpose_server.api.errors import problem_of
 from fullpose_server.api.problems import ApiError, validation_problem
 from fullpose_server.api.schemas.plans import ReportOut
 from fullpose_server.api.schemas.solve import SolveIn, SolveOut
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
-from fullpose_server.errors import FileError, ServerError
+from fullpose_server.api.told import told
 from fullpose_server.formats.flight_folder import write_flight
 from fullpose_server.formats.importers.columns import Bounds, check_rows
-from fullpose_server.formats.rig_file import RigStore
 from fullpose_server.formats.trajectory import Convention, Trajectory, from_columns
 from fullpose_server.formats.trajectory_file import read_trajectory, source_format
 from fullpose_server.planning.worker import Maker, Progress
@@ -106,6 +102,9 @@ def _solve(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
     if len(body.time_s) > asked.samples:
         told = f"{len(body.time_s)} samples: this server solves up to {asked.samples} at once"
         raise ApiError(413, "too-large", told)
+    # Rig files have many models: a quarter of a second that an upload need not wait for.
+    from fullpose_server.formats.rig_file import RigStore
+
     rig = RigStore(Path(asked.rigs)).get(body.rig).rig
     Path(asked.answer).write_text(_solved(body, rig).model_dump_json(), encoding="utf-8")
     return {}
@@ -144,14 +143,12 @@ MAKERS: dict[str, Maker] = {Work.READ_FILE: _read_file, Work.READ_JSON: _read_js
 
 def failure(error: Exception, bound: int) -> dict[str, Any]:
     """The problem document of what went wrong, for `json`; `bound`: the memory there was [bytes]."""
-    match error:
-        case MemoryError() | SystemError():  # an error that there was no memory to tell
-            error = memory_needed(bound)
-        case ApiError() | SolverError() | ServerError() | FileError() | OSError(errno=errno.ENOSPC | errno.EDQUOT):
-            pass
-        case _:  # for the server to log
-            return {"unexpected": f"{type(error).__name__}: {error}"}
-    document: dict[str, Any] = json.loads(problem_of(error).model_dump_json())
+    if isinstance(error, (MemoryError, SystemError)):  # the latter: an error that there was no memory to tell
+        error = memory_needed(bound)
+    problem = told(error)
+    if problem is None:  # for the server to log
+        return {"unexpected": f"{type(error).__name__}: {error}"}
+    document: dict[str, Any] = json.loads(problem.model_dump_json())
     return document
 
 

@@ -20,7 +20,7 @@ from fullpose_server.api.schemas.base import Notice
 from fullpose_server.api.schemas.trajectories import TrajectoryOut, TrajectoryPreview
 from fullpose_server.api.uploads import receive_body, receive_form
 from fullpose_server.errors import InUseError
-from fullpose_server.formats.flight_folder import FlightFacts
+from fullpose_server.formats.flight_folder import FlightFacts, read_arrays
 from fullpose_server.formats.trajectory import Convention, euler_deg
 from fullpose_server.pages.thin import thin
 from fullpose_server.store.keyset import Key
@@ -127,7 +127,8 @@ def preview_trajectory(
     sha256: str, services: ServicesDep, points: Annotated[int, Query(ge=2, le=20_000)] = 1000
 ) -> TrajectoryPreview:
     """The flight thinned to about `points` samples, for plots."""
-    time_s, q = services.trajectories.arrays(sha256)
+    row = services.trajectories.get(sha256)
+    time_s, q = read_arrays(services.trajectories.folder(sha256), row.samples)
     euler = euler_deg(q)  # of all samples: between those that are kept, whole turns may be
     rows = thin(time_s.size, points, euler)
     yaw, pitch, roll = euler[rows].T
