@@ -15,7 +15,6 @@ import contextlib
 import http.client
 import json
 import os
-import socket
 import subprocess
 import sys
 import tempfile
@@ -28,6 +27,7 @@ from websockets.sync.client import connect
 
 from bench.machine import machine
 from bench.realtime.attacks import NAMES
+from bench.realtime.bare_uvicorn import bare_server
 from bench.realtime.estop_latency import RIG, ask, row
 from bench.realtime.operator import Operator, attached, write_swing
 from bench.realtime.rig_load import Viewer, served
@@ -38,15 +38,6 @@ from fullpose_server.runtime.supervisor.rig_client import RigHost
 FILES = 1024
 Asking = Callable[[str], None]  # to stop or to E-stop
 DISK_BYTES = 64_000_000
-_BARE = """
-import asyncio, uvicorn
-from fullpose_server.gate.system import SERVER, before_others
-async def app(scope, receive, send):
-    await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"2")]})
-    await send({"type": "http.response.body", "body": b"ok"})
-before_others(SERVER)
-uvicorn.run(app, port=%d, log_level="error", lifespan="off")
-"""
 
 
 class Ways:
@@ -142,23 +133,6 @@ def attacked(name: str, port: int, data: Path) -> Iterator[None]:
     finally:
         process.stdin.close()
         process.wait(120)
-
-
-@contextlib.contextmanager
-def bare_server() -> Iterator[int]:
-    """A bare uvicorn; its port."""
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
-    process = subprocess.Popen([sys.executable, "-c", _BARE % port])
-    try:
-        while True:
-            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
-                break
-            time.sleep(0.05)
-        yield port
-    finally:
-        process.terminate()
-        process.wait(10)
 
 
 def memory_mb(pid: int) -> float:

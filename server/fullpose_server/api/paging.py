@@ -48,11 +48,17 @@ class Page:
 
     def answer(self, request: Request, body: bytes, found: int, last: Key | None) -> Response:
         """The page as JSON, with the link to the next one where more than its rows were `found`."""
-        headers = {}
-        if found > self.rows and last is not None:
-            url = request.url.include_query_params(before=f"{last.created!r}~{last.id}", limit=self.rows)
-            headers["Link"] = f'<{url.path}?{url.query}>; rel="next"'
-        return Response(body, headers=headers, media_type="application/json")
+        before = f"{last.created!r}~{last.id}" if found > self.rows and last is not None else None
+        return listed(request, body, before, self.rows)
+
+
+def listed(request: Request, body: bytes, before: str | None, rows: int) -> Response:
+    """A page of so many rows as JSON, with the link to the next one, which goes on `before` there."""
+    headers = {}
+    if before is not None:
+        url = request.url.include_query_params(before=before, limit=rows)
+        headers["Link"] = f'<{url.path}?{url.query}>; rel="next"'
+    return Response(body, headers=headers, media_type="application/json")
 
 
 async def _page(

@@ -9,6 +9,7 @@ import contextlib
 import json
 import re
 import shutil
+from bisect import bisect_left, insort
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -82,6 +83,7 @@ class Comparisons:
                 continue
             if job is not None:
                 self._jobs[job.id] = job
+        self._order = sorted(map(_key, self._jobs.values()))
         self._runner = Runner("comparisons", prewarm=False)
 
     @property
@@ -103,6 +105,7 @@ class Comparisons:
         job = Comparison(self._root / uuid4().hex[:16], request, JobStatus.QUEUED)
         await asyncio.to_thread(_write_request, job)
         self._jobs[job.id] = job
+        insort(self._order, _key(job))
         self._runner.submit(job, owner)
         return job
 
@@ -114,8 +117,9 @@ class Comparisons:
 
     def all(self, before: Key | None = None, limit: int | None = None) -> Sequence[Comparison]:
         """Newest first, those after the one at `before`, at most `limit`."""
-        found = sorted(self._jobs.values(), key=_key, reverse=True)
-        return [job for job in found if before is None or _key(job) < before][:limit]
+        end = len(self._order) if before is None else bisect_left(self._order, before)
+        begin = 0 if limit is None else max(0, end - limit)
+        return [self._jobs[key.id] for key in reversed(self._order[begin:end])]
 
     def progress(self, comparison: str) -> Progress | None:
         """Of one that is being made."""
@@ -140,14 +144,14 @@ class Comparisons:
 
     def damaged(self, comparison: str, quarantine: Quarantine, why: str) -> None:
         """A comparison that was made is there no more."""
-        job = self._jobs.pop(comparison)
+        job = self._forgotten(comparison)
         quarantine.take("comparison", comparison, [job.folder], why)
 
     async def remove(self, comparison: str) -> None:
         """Cancel a comparison that is being made (it stays, cancelled); remove one that is not."""
         job = self.get(comparison)
         if job.status.finished:
-            del self._jobs[comparison]
+            self._forgotten(comparison)
             await asyncio.to_thread(shutil.rmtree, job.folder, ignore_errors=True)
         elif not await self._runner.cancel(comparison):
             error = {"code": "cancelled", "message": "cancelled before it was done"}
@@ -155,6 +159,11 @@ class Comparisons:
                 await asyncio.to_thread(job.finish, Outcome(JobStatus.CANCELLED, error=error))
             await self._runner.cancel(comparison)  # where its turn came meanwhile
             self._runner.pending.remove(comparison)
+
+    def _forgotten(self, comparison: str) -> Comparison:
+        job = self._jobs.pop(comparison)
+        self._order.remove(_key(job))
+        return job
 
     async def close(self) -> None:
         """End; what is not made is marked interrupted."""

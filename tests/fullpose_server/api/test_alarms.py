@@ -86,3 +86,11 @@ def pages_and_filters(server: LiveServer, first: dict[str, Any], second: dict[st
         assert [row["id"] for row in server.http.get("/alarms", params=asked).json()] == found, query
     assert server.http.get("/alarms", params={"severity": "dire"}).status_code == 422
     assert server.http.get("/alarms", params={"from": "yesterday"}).status_code == 422
+    whole = [line["id"] for line in server.http.get("/audit", params={"limit": 1000}).json()]
+    found, asked_for = [], "/api/v1/audit?limit=3"
+    while asked_for:
+        part = server.http.get(f"{server.url}{asked_for}")
+        found += [line["id"] for line in part.json()]
+        asked_for = part.links.get("next", {}).get("url", "")
+    assert found == whole
+    assert len(whole) > 3

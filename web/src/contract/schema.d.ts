@@ -30,7 +30,7 @@ export interface paths {
         };
         /**
          * List Audit
-         * @description Every command, accepted or refused, newest first.
+         * @description Every command, accepted or refused, newest first, a page at a time.
          */
         get: operations["list_audit_api_v1_audit_get"];
         put?: never;
@@ -3283,6 +3283,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description The next page, `<path>; rel="next"`, where there is one */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {

@@ -5,6 +5,7 @@ import json
 import os
 import re
 import time
+from bisect import bisect_left
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -22,6 +23,7 @@ from fullpose_server.runtime.recording.mcap_reader import (
     read_record,
     run_of,
 )
+from fullpose_server.runtime.recording.record_names import RecordNames
 from fullpose_server.session.states import State
 
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,199}")  # of a run: a file's name, and no path
@@ -63,6 +65,7 @@ class RunFiles:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._names = RecordNames(folder)
 
     def all(self, rig: str | None = None, before: str | None = None, limit: int | None = None) -> list[RunSummary]:
         """Newest first, those after the run `before`, at most `limit`; one that cannot be read says why.
@@ -70,14 +73,15 @@ class RunFiles:
         One that has only just begun may be left out.
         """
         found: list[RunSummary] = []
-        with os.scandir(self.folder) as entries:
-            names = sorted((e.name for e in entries if e.name.endswith(".mcap")), reverse=True)
-        for name in names:
-            path = self.folder / name
-            if (before is not None and path.stem >= before) or (rig is not None and _rig_of(path.stem) != rig):
-                continue
+        # Of ten thousand records all but a page are passed over by their names alone.
+        ids = self._names.all()
+        end = len(ids) if before is None else bisect_left(ids, before)
+        for run in reversed(ids[:end]):
             if limit is not None and len(found) >= limit:
                 break
+            if rig is not None and _rig_of(run) != rig:
+                continue
+            path = self.folder / f"{run}.mcap"
             # One that is gone since we looked for it is no run any more.
             with contextlib.suppress(FileNotFoundError):
                 try:
