@@ -113,23 +113,6 @@ def locked_database(attack: Attack) -> None:
     attack.in_threads(lock, 1)
 
 
-def full_disk(attack: Attack) -> None:
-    """Whatever is free of the data folder's file system is taken. It must be one of its own: see `own_disk`."""
-    filler = attack.data / "filler"
-
-    def fill(_: int) -> None:
-        with filler.open("ab", 0) as file:
-            try:
-                while not attack.over.is_set():
-                    file.write(bytes(1 << 16))
-            except OSError:
-                attack.count("full")
-        attack.over.wait(0.05)
-
-    attack.in_threads(fill, 1)
-    filler.unlink()
-
-
 def idle(attack: Attack) -> None:
     """1100 connections that ask for nothing, replaced where they are closed."""
     held: list[socket.socket] = []
@@ -190,7 +173,6 @@ NAMES: dict[str, Callable[[Attack], None]] = {
     "solve": large_solve,
     "bombs": bombs,
     "locked": locked_database,
-    "full": full_disk,
     "idle": idle,
     "viewers": silent_viewers,
     "busy": busy,

@@ -4,8 +4,8 @@
 
 Each stop is asked over HTTP, the connection included, and over the stop channel. Two clocks start with the request: one
 ends when the loop has written the first braking command (it notes the time in shared memory), one with the answer. The
-attack `full` is asked for by name: a rig is not armed on a full disk, so that it can be stopped once only; it needs a
-data folder on a file system of its own, given as `--disk`, or as root the bench mounts one.
+attack `full` fills the disk anew before every move, since a rig is not armed on a full one; it needs a data folder on a
+file system of its own, given as `--disk`, or as root the bench mounts one.
 A normal viewer's largest gaps between frames, the server's memory and what the attackers were answered are told too.
 """
 
@@ -37,7 +37,8 @@ from fullpose_server.runtime.supervisor.rig_client import RigHost
 
 FILES = 1024
 Asking = Callable[[str], None]  # to stop or to E-stop
-DISK_BYTES = 64_000_000
+FULL = "full"  # the attack that is no client
+DISK_BYTES = 320_000_000  # a rig is armed where 200 MB are free
 
 
 class Ways:
@@ -121,7 +122,7 @@ def timed(work: Callable[[], None]) -> float:
 @contextlib.contextmanager
 def attacked(name: str, port: int, data: Path) -> Iterator[None]:
     """The attack, in a process of its own."""
-    if name == "none":
+    if name in ("none", FULL):
         yield
         return
     command = [sys.executable, "-m", "bench.realtime.attacks", name, "--port", str(port), "--data", str(data)]
@@ -133,6 +134,21 @@ def attacked(name: str, port: int, data: Path) -> Iterator[None]:
     finally:
         process.stdin.close()
         process.wait(120)
+
+
+@contextlib.contextmanager
+def filled(folder: Path) -> Iterator[None]:
+    """A disk with no room left."""
+    filler = folder / "filler"
+    try:
+        with filler.open("wb", 0) as file:
+            for size in (1 << 20, 1 << 12):
+                with contextlib.suppress(OSError):
+                    while True:
+                        file.write(bytes(size))
+        yield
+    finally:
+        filler.unlink(missing_ok=True)
 
 
 def memory_mb(pid: int) -> float:
@@ -162,7 +178,8 @@ async def measure(attack: str, times: int, root: Path) -> None:
                     for k in range(times):
                         if host.snapshot().state != "armed":
                             await operator.arm(plan_folder=str(plan))
-                        found.append(await stop_once(host, operator, over, word, (-1.0) ** k))
+                        with filled(root / "data") if attack == FULL else contextlib.nullcontext():
+                            found.append(await stop_once(host, operator, over, word, (-1.0) ** k))
                         beside.append(await asyncio.to_thread(timed, ways.bare))
                     print(row(f"{attack}: {word} {way}, braking", [one[0] for one in found]))
                     print(row(f"{attack}: {word} {way}, answer", [one[1] for one in found]), flush=True)
@@ -191,13 +208,13 @@ def main() -> None:
     """Print the table."""
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--times", type=int, default=100)
-    arguments.add_argument("--attacks", default=",".join(["none", *(name for name in NAMES if name != "full")]))
+    arguments.add_argument("--attacks", default=",".join(["none", *NAMES, FULL]))
     arguments.add_argument("--disk", type=Path, default=None)
     given = arguments.parse_args()
     print(machine(), os.getloadavg())
     print(f"{'request to ... [ms]':40s} {'p50':>8s} {'p99':>8s} {'max':>8s} {'times':>6s}")
     for attack in given.attacks.split(","):
-        folder = own_disk(given.disk) if attack == "full" else tempfile.TemporaryDirectory()
+        folder = own_disk(given.disk) if attack == FULL else tempfile.TemporaryDirectory()
         with folder as root:
             asyncio.run(measure(attack, given.times, Path(root)))
 

@@ -24,21 +24,7 @@ from fullpose_server.session.states import STATES
 from tests.fullpose_server.drives.relay import Relay, relay
 from tests.fullpose_server.drives.tables import emulator
 from tests.fullpose_server.runtime.rigs import PATIENT, config_of, hosted, plan_of, ticked, within_limits, written
-
-
-@contextlib.contextmanager
-def small_disk(folder: Path, kilobytes: int) -> Iterator[Path]:
-    """A file system of this size, really full when it is full; skips where mounting is not allowed."""
-    folder.mkdir()
-    mounted = subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", str(folder)], capture_output=True, check=False
-    )
-    if mounted.returncode:
-        pytest.skip("mounting a tmpfs is not allowed here")
-    try:
-        yield folder
-    finally:
-        subprocess.run(["umount", "-l", str(folder)], check=True)
+from tests.support.disks import small_disk
 
 
 def test_a_disk_that_fills_up_in_flight_costs_the_record_and_not_the_flight(tmp_path: Path) -> None:

@@ -1,32 +1,16 @@
 """The data folder's disk, really full, under a real server: what needs room says so, what needs none goes on."""
 
-import contextlib
-import errno
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.faults.test_disk_and_drives import small_disk
 from tests.fullpose_server.api.live_server import LiveServer, Operator, live_server
+from tests.support.disks import fill, small_disk
 
 MB = 1_000_000
 RIG = "bench"
 LONG = "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(f"{k / 10},{k / 50},0,0\n" for k in range(1200))
-
-
-def fill(folder: Path) -> Path:
-    """Take all the room there is."""
-    ballast = folder / "ballast"
-    with ballast.open("wb", buffering=0) as file:
-        for size in (65536, 4096, 1):
-            with contextlib.suppress(OSError):
-                while True:
-                    file.write(b"\1" * size)
-    with pytest.raises(OSError, match="No space left") as full, (folder / "one more").open("wb", buffering=0) as file:
-        file.write(b"\1" * 8192)
-    assert full.value.errno == errno.ENOSPC
-    return ballast
 
 
 def problem(answer: Any, status: int, code: str) -> str:

@@ -1,0 +1,15 @@
+"""A slice of the campaign of faults; FULLPOSE_FAULTS sets how many rounds of it."""
+
+import os
+from pathlib import Path
+
+from tests.faults.campaign import DISK_KB, rounds
+from tests.faults.laboratory import Laboratory
+from tests.support.disks import small_disk
+
+ROUNDS = int(os.environ.get("FULLPOSE_FAULTS", "5"))
+
+
+def test_whatever_fails_limits_are_kept_and_the_server_is_up_again(tmp_path: Path) -> None:
+    with small_disk(tmp_path / "disk", DISK_KB) as data, Laboratory(data) as lab:
+        assert rounds(lab, 5, range(ROUNDS)).total() == ROUNDS
