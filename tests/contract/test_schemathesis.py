@@ -1,7 +1,7 @@
 """Every route, asked what its contract allows and what it does not, by Schemathesis, on a store with data.
 
 No answer may be an error of the server, or one that the contract does not name: the catch-all `default` of each
-operation is taken out of the document first. Longer: `FULLPOSE_SCHEMATHESIS_EXAMPLES=100 pytest tests/contract`.
+operation is taken out of the document first. Longer: `SCHEMATHESIS_EXAMPLES=100 pytest tests/contract`.
 """
 
 import json
@@ -16,7 +16,7 @@ import pytest
 from tests.fullpose_server.api.live_server import Operator, live_server
 
 COMMITTED = Path(__file__).parents[2] / "docs" / "openapi.json"
-EXAMPLES = os.environ.get("FULLPOSE_SCHEMATHESIS_EXAMPLES", "2")
+EXAMPLES = os.environ.get("SCHEMATHESIS_EXAMPLES", "2")
 CHECKS = (
     "not_a_server_error",
     "status_code_conformance",

@@ -164,8 +164,8 @@ def stocked(server: Server) -> Stock:
 
 @pytest.fixture
 def shots(tmp_path: Path) -> Path:
-    """Where screenshots go: the folder named by FULLPOSE_SHOTS, to be looked at, else the test's own."""
-    folder = Path(os.environ.get("FULLPOSE_SHOTS") or tmp_path)
+    """Where screenshots go: the folder named by SHOTS_FOLDER, to be looked at, else the test's own."""
+    folder = Path(os.environ.get("SHOTS_FOLDER") or tmp_path)
     folder.mkdir(parents=True, exist_ok=True)
     return folder
 

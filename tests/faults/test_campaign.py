@@ -1,4 +1,4 @@
-"""A slice of the campaign of faults; FULLPOSE_FAULTS sets how many rounds of it."""
+"""A slice of the campaign of faults; FAULT_ROUNDS sets how many rounds of it."""
 
 import os
 from pathlib import Path
@@ -7,7 +7,7 @@ from tests.faults.campaign import DISK_KB, rounds
 from tests.faults.laboratory import Laboratory
 from tests.support.disks import small_disk
 
-ROUNDS = int(os.environ.get("FULLPOSE_FAULTS", "5"))
+ROUNDS = int(os.environ.get("FAULT_ROUNDS", "5"))
 
 
 def test_whatever_fails_limits_are_kept_and_the_server_is_up_again(tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 """Processes killed and stopped for real: limits kept, the cause named, the record readable, the session adopted.
 
-FULLPOSE_FAULTS sets how many random moments are tried: a few by default; a campaign, on a machine with nothing else to
+FAULT_ROUNDS sets how many random moments are tried: a few by default; a campaign, on a machine with nothing else to
 do, tries a hundred and holds the server to 200 ms for saying that the rig process is gone.
 """
 
@@ -20,8 +20,8 @@ from fullpose_server.session.machine import SilencePolicy
 from tests.faults.records import messages
 from tests.fullpose_server.runtime.rigs import codes_of, config_of, hosted, plan_of, within_limits, written
 
-CAMPAIGN = "FULLPOSE_FAULTS" in os.environ
-MOMENTS = int(os.environ.get("FULLPOSE_FAULTS", "3"))
+CAMPAIGN = "FAULT_ROUNDS" in os.environ
+MOMENTS = int(os.environ.get("FAULT_ROUNDS", "3"))
 SAID_S = 0.2 if CAMPAIGN else 5.0  # by then the server has said what happened
 QUICK = SilencePolicy(0.8, 8.0, 60.0)
 

@@ -19,8 +19,8 @@ from fullpose_server.session.machine import SilencePolicy
 from tests.faults.records import messages
 from tests.fullpose_server.runtime.rigs import Operator, config_of, plan_of, within_limits, written
 
-CAMPAIGN = "FULLPOSE_FAULTS" in os.environ
-MOMENTS = int(os.environ.get("FULLPOSE_FAULTS", "3"))
+CAMPAIGN = "FAULT_ROUNDS" in os.environ
+MOMENTS = int(os.environ.get("FAULT_ROUNDS", "3"))
 SAID_S = 0.2 if CAMPAIGN else 5.0  # by then the server has said what happened
 QUICK = SilencePolicy(0.8, 8.0, 60.0)
 

@@ -25,6 +25,10 @@ ConventionName = Annotated[
     str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
 ]
 
+Config = Annotated[
+    Path | None, typer.Option(help="Settings, as TOML: port = 8642; by default the file FULLPOSE_CONFIG names.")
+]
+
 
 def command(record: type[Record], run: Callable[[Record], None]) -> Callable[..., None]:
     """`run` with the fields of the dataclass `record` as its parameters, in their order."""

@@ -1,48 +1,17 @@
-"""Before the server runs: its settings and its socket, and what is wrong with them. Shared by `serve` and `demo`."""
+"""Before the server runs: its log and its socket, and what is wrong with it. Shared by `serve` and `demo`."""
 
 import errno
 import logging
 import socket
 import sys
 from collections.abc import Awaitable, Callable
-from pathlib import Path
-from typing import Any
-
-from pydantic import ValidationError
-from pydantic_core import ErrorDetails
-from pydantic_settings import SettingsError
 
 from fullpose_server.cli._exit import fail
 from fullpose_server.settings import Settings
 
 BACKLOG = 512
 UNSENT = 16_384  # bytes the system may hold unsent for a client; what is older than that would only make it late
-UNAUTHENTICATED = (
-    "no users are configured, so this server listens on this machine only: use --host 127.0.0.1, or allow the network "
-    "with FULLPOSE_ALLOW_UNAUTHENTICATED_NETWORK=true"
-)
-
 Ready = Callable[[str], Awaitable[None]]
-
-
-def settings_of(host: str | None, port: int | None, data_dir: Path | None) -> Settings:
-    """Settings from the environment, with what the command line says over them. Exits where they cannot be."""
-    given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir}
-    try:
-        settings = Settings(**{key: value for key, value in given.items() if value is not None})
-    except ValidationError as error:
-        fail("; ".join(_told(wrong) for wrong in error.errors()))
-    except SettingsError as error:  # a variable that should be JSON and is none
-        fail(f"settings: {error}")
-    if not settings.loopback and not settings.allow_unauthenticated_network:
-        fail(f"--host {settings.host}: {UNAUTHENTICATED}")
-    return settings
-
-
-def _told(wrong: ErrorDetails) -> str:
-    name = "_".join(str(part) for part in wrong["loc"])
-    word = wrong["msg"].replace("Input should be", "expected").replace("Value error, ", "")
-    return f"FULLPOSE_{name.upper()} = {wrong['input']!r}: {word}"
 
 
 def run(settings: Settings, ready: Ready) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fullpose_server.cli._arguments import Config
 from fullpose_server.cli._exit import CommandError, say
 
 if TYPE_CHECKING:
@@ -32,12 +33,14 @@ def demo(
     data_dir: Annotated[
         Path | None, typer.Option(help="Where everything is kept (~/.local/share/fullpose/demo).")
     ] = None,
+    config: Config = None,
 ) -> None:
     """Serve until Ctrl-C; open the address in a browser."""
-    from fullpose_server.cli._serving import run, settings_of
+    from fullpose_server.cli._configuration import configured
+    from fullpose_server.cli._serving import run
     from fullpose_server.settings import default_data_dir
 
-    run(settings_of(host, port, data_dir or default_data_dir() / "demo"), fly)
+    run(configured(host, port, data_dir or default_data_dir() / "demo", config).settings, fly)
 
 
 async def fly(url: str) -> None:

@@ -39,13 +39,13 @@ def rigs(
 
 def _check_drive(file: str, entry: "RigEntry") -> None:
     """Raise `FileError` where the drive is not there, or does not take its options. Nothing is connected."""
-    from fullpose_server.cli._serving import settings_of
+    from fullpose_server.cli._configuration import configured
     from fullpose_server.drives import registry
     from fullpose_server.drives.base import DriveError
     from fullpose_server.errors import FileError
 
     operating = entry.operating
-    rate_hz = settings_of(None, None, None).rig_rate_hz
+    rate_hz = configured().settings.rig_rate_hz
     try:
         registry.make(operating.drive, entry.rig, rate_hz, operating.drive_options)
     except DriveError as cause:

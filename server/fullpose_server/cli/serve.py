@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from fullpose_server.cli._arguments import Config
+
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
@@ -15,11 +17,13 @@ def serve(
     host: Annotated[str | None, typer.Option(help="Address to listen on (127.0.0.1).")] = None,
     port: Annotated[int | None, typer.Option(help="Port to listen on (8642); 0 takes a free one.")] = None,
     data_dir: Annotated[Path | None, typer.Option(help="Where everything is kept (~/.local/share/fullpose).")] = None,
+    config: Config = None,
 ) -> None:
-    """Serve until Ctrl-C. Every setting is also read from the environment, as FULLPOSE_HOST and so on."""
-    from fullpose_server.cli._serving import run, settings_of
+    """Serve until Ctrl-C. Every setting is also read from the environment, as FULLPOSE_HOST, and from a file."""
+    from fullpose_server.cli._configuration import configured
+    from fullpose_server.cli._serving import run
 
     async def ready(_url: str) -> None:
         return
 
-    run(settings_of(host, port, data_dir), ready)
+    run(configured(host, port, data_dir, config).settings, ready)
