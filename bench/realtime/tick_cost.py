@@ -23,7 +23,7 @@ from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.live.packets import Kind, encode_sample
 from fullpose_server.runtime.live.source import LiveSource
-from fullpose_server.runtime.loop.clock import SteppedClock, seconds
+from fullpose_server.runtime.loop.clock import MadeUpClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
 from fullpose_server.runtime.loop.leisure import Leisure
 from fullpose_server.runtime.loop.process import assemble
@@ -37,7 +37,7 @@ PERIOD_NS = 1_000_000
 class Source:
     """A datagram link that has a sample for every tick while it is `open`."""
 
-    def __init__(self, clock: SteppedClock) -> None:
+    def __init__(self, clock: MadeUpClock) -> None:
         self._clock = clock
         self._sent = 0
         self.open = False
@@ -69,7 +69,7 @@ class Bench:
     def __init__(self, folder: Path) -> None:
         rig = builtin_rigs()[RIG]
         self.config = RigConfig(RIG, rig, folder, folder / "runs", min_free_mb=0.0)
-        self.clock = SteppedClock()
+        self.clock = MadeUpClock()
         self.source = Source(self.clock)
         self.shared = Shared(folder / "memory", create=True)
         drive = SimulatedDrive(rig, self.config.rate_hz, SimulatedOptions())

@@ -13,7 +13,7 @@ from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.live.packets import Kind, encode_sample
 from fullpose_server.runtime.live.source import LiveSource
-from fullpose_server.runtime.loop.clock import SteppedClock, seconds
+from fullpose_server.runtime.loop.clock import MadeUpClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
 from fullpose_server.runtime.loop.leisure import Leisure
 from fullpose_server.runtime.loop.process import assemble
@@ -64,7 +64,7 @@ class MadeUpRig:
     """
 
     def __init__(self, config: RigConfig, memory: Path, options: SimulatedOptions | None = None) -> None:
-        self.clock = SteppedClock()
+        self.clock = MadeUpClock()
         self.shared = Shared(memory, create=True)
         self.link = Link()
         self.drive = SimulatedDrive(config.rig, config.rate_hz, options or SimulatedOptions())

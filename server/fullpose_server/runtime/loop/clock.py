@@ -71,7 +71,7 @@ class SystemClock:
         time.sleep(seconds)
 
 
-class SteppedClock:
+class MadeUpClock:
     """Moved by its owner alone, `now` in [ns]: a minute of the loop takes a second, in tests and benches."""
 
     def __init__(self) -> None:

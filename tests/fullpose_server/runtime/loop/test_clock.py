@@ -5,15 +5,15 @@ import time
 import pytest
 
 from fullpose_server.runtime.loop import clock
-from fullpose_server.runtime.loop.clock import Deadlines, SteppedClock
+from fullpose_server.runtime.loop.clock import Deadlines, MadeUpClock
 
 
 @pytest.fixture
-def fake() -> SteppedClock:
-    return SteppedClock()
+def fake() -> MadeUpClock:
+    return MadeUpClock()
 
 
-def test_work_does_not_shift_the_deadlines(fake: SteppedClock) -> None:
+def test_work_does_not_shift_the_deadlines(fake: MadeUpClock) -> None:
     deadlines = Deadlines(1_000_000, fake)
     begun = fake.now
     for tick in range(1, 100):
@@ -22,7 +22,7 @@ def test_work_does_not_shift_the_deadlines(fake: SteppedClock) -> None:
         fake.now += 300_000 + tick  # work
 
 
-def test_missed_deadlines_are_counted_and_not_caught_up(fake: SteppedClock) -> None:
+def test_missed_deadlines_are_counted_and_not_caught_up(fake: MadeUpClock) -> None:
     deadlines = Deadlines(1_000_000, fake)
     first, _, _ = deadlines.wait()
     fake.now += 3_400_000
@@ -32,7 +32,7 @@ def test_missed_deadlines_are_counted_and_not_caught_up(fake: SteppedClock) -> N
     assert (now - first, lateness, missed) == (4_000_000, 0, 0)
 
 
-def test_a_restart_forgets_the_pause(fake: SteppedClock) -> None:
+def test_a_restart_forgets_the_pause(fake: MadeUpClock) -> None:
     deadlines = Deadlines(1_000_000, fake)
     deadlines.wait()
     fake.now += 700_000_000
