@@ -146,7 +146,7 @@ async def by_udp(seconds: float) -> None:
         await operator.arm(live={"method": "exact"})
         await operator.must("go_live")
         source = Source(Udp(port), seconds)
-        memory = await followed(source, host.snapshot().health.rig_pid, lambda: host.lease("renew", "bench"))
+        memory = await followed(source, host.snapshot().health.rig_pid, operator.renew)
         await operator.until("armed", "faulted")
         snapshot = host.snapshot()
         await host.close(stop_rig=True)

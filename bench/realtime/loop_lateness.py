@@ -66,7 +66,7 @@ async def fly(host: RigHost, plan: Path, seconds: float) -> tuple[np.ndarray, in
     parts: list[np.ndarray] = []
     while sum(map(len, parts)) < seconds * host.rate_hz:
         await asyncio.sleep(0.5)
-        await host.lease("renew", "bench")
+        await operator.renew()
         rows, lost = host.samples(at, 1 << 16)
         assert lost == 0
         at = int(rows["seq"][-1])

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import secrets
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan,
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.messages import Reply
 from fullpose_server.runtime.supervisor.rig_client import RigHost
-from fullpose_server.session.lease import LeaseToken
+from fullpose_server.session.lease import LeaseAction, LeaseToken, proof_of
 
 SWING = np.radians([40.0, 50.0, 35.0, 45.0])
 HERTZ = np.array([0.2, 0.17, 0.25, 0.3])
@@ -48,16 +49,21 @@ class Operator:
 
     def __init__(self, host: RigHost) -> None:
         self._host = host
-        self._token = LeaseToken(0, 0)
+        self._proof = proof_of(secrets.token_urlsafe())
+        self._token = LeaseToken(0, 0, self._proof)
 
     async def take(self) -> None:
         """Take the lease from whoever holds it."""
-        lease = await self._host.lease("takeover", "bench")
-        self._token = LeaseToken(lease.epoch, lease.sequence)
+        lease = await self._host.lease(LeaseAction.TAKEOVER, "bench", self._proof)
+        self._token = LeaseToken(lease.epoch, lease.sequence, self._proof)
+
+    async def renew(self) -> None:
+        """Keep the lease."""
+        await self._host.lease(LeaseAction.RENEW, "bench", self._proof)
 
     async def say(self, command: str, **args: Any) -> Reply:
         """One command, with the next sequence number."""
-        self._token = LeaseToken(self._token.epoch, self._token.sequence + 1)
+        self._token = LeaseToken(self._token.epoch, self._token.sequence + 1, self._proof)
         return await self._host.command(command, args, "bench", self._token)
 
     async def must(self, command: str, **args: Any) -> None:
@@ -78,7 +84,7 @@ class Operator:
         """Wait for one of `states`, keeping the lease alive."""
         async with asyncio.timeout(seconds):
             while (snapshot := self._host.snapshot()).state not in states:
-                await self._host.lease("renew", "bench")
+                await self.renew()
                 with contextlib.suppress(TimeoutError):
                     await asyncio.wait_for(self._host.wait_change(snapshot.revision), 0.2)
 

@@ -27,10 +27,11 @@ from fullpose_server.runtime.loop.clock import MadeUpClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
 from fullpose_server.runtime.loop.leisure import Leisure
 from fullpose_server.runtime.loop.process import assemble
-from fullpose_server.session.lease import LeaseToken
+from fullpose_server.session.lease import LeaseToken, proof_of
 from fullpose_server.session.states import State
 
 RIG = "vertical-4"
+PROOF = proof_of("the bench's secret")
 PERIOD_NS = 1_000_000
 
 
@@ -96,7 +97,7 @@ class Bench:
 
     def lease(self, action: str) -> None:
         """Take or renew it."""
-        given = self.answer(messages.Request(0, "lease", "bench", action=action)).lease
+        given = self.answer(messages.Request(0, "lease", "bench", action=action, proof=PROOF)).lease
         if given is None:
             raise RuntimeError(action)
         self.epoch = given.epoch
@@ -104,7 +105,7 @@ class Bench:
     def must(self, command: str, **args: Any) -> None:
         """One command that is to be carried out."""
         self.sequence += 1
-        token = LeaseToken(self.epoch, self.sequence)
+        token = LeaseToken(self.epoch, self.sequence, PROOF)
         reply = self.answer(messages.Request(0, "command", "bench", command, args, token)).reply
         if not reply.ok:
             raise RuntimeError(f"{command}: {reply}")

@@ -34,7 +34,7 @@ from fullpose_server.api.routes import (
     trajectories,
 )
 from fullpose_server.api.socket_limit import SocketLimit
-from fullpose_server.scene.errors import PayloadMeshError, SceneError
+from fullpose_server.scene.errors import PayloadMeshError, SceneError, SceneSocketError
 from fullpose_server.scene.on_demand import ScenesOnDemand
 from fullpose_server.scene.proxy import router as scene_router
 from fullpose_server.scene.scenes import SceneServer
@@ -134,5 +134,6 @@ async def _scene(connection: HTTPConnection, rig: str) -> None:
 
 
 async def _scene_problem(request: Request, error: Exception) -> Response:
-    code, status = ("payload-mesh", 422) if isinstance(error, PayloadMeshError) else ("scene", 404)
+    status = 503 if isinstance(error, SceneSocketError) else 404
+    code, status = ("payload-mesh", 422) if isinstance(error, PayloadMeshError) else ("scene", status)
     return problem_response(ApiError(status, code, str(error)).problem, request)

@@ -2,7 +2,7 @@
 
 import asyncio
 import json
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,15 +29,19 @@ class ClientError(Exception):
 
 @dataclass
 class _Lease:
-    """The lease of one rig, as this client knows it: its epoch, and the sequence of the last command."""
+    """The lease of one rig, as this client knows it: its secret, its epoch, and the sequence of the last command."""
 
     epoch: int = 0
     sequence: int = 0
+    secret: str | None = None
+    requested: str | None = None  # the secret that is the lease's once it is granted to us
 
-    def next(self) -> dict[str, int]:
-        """What the next command shows."""
+    def next(self) -> dict[str, Any] | None:
+        """What the next command shows; None where there was never a lease."""
+        if self.secret is None:
+            return None
         self.sequence += 1
-        return {"epoch": self.epoch, "sequence": self.sequence}
+        return {"epoch": self.epoch, "sequence": self.sequence, "secret": self.secret}
 
 
 class Client:
@@ -111,15 +115,43 @@ class Client:
         return await self._object("GET", f"/rigs/{quote(rig)}/session")
 
     async def take_lease(self, rig: str, action: str = "take") -> dict[str, Any]:
-        """Take (or takeover, request, renew) the lease; commands carry it from here on."""
-        held = await self._object("POST", f"/rigs/{quote(rig)}/lease", json={"action": action})
-        if held["holder"] == self.name and held["epoch"] != self._lease(rig).epoch:
-            self._leases[rig] = _Lease(held["epoch"], held["sequence"])
+        """Take (or takeover, request, renew, grant) the lease; commands carry it from here on.
+
+        To take what is ours already renews it. One that was requested is ours once `wait_lease` has returned.
+        """
+        lease = self._lease(rig)
+        if action == "take" and lease.secret is not None:
+            try:
+                return await self.take_lease(rig, "renew")
+            except ClientError as error:
+                if error.status != 403:
+                    raise
+        body = {"action": action} if action in ("take", "takeover", "request") else self._proving(rig, action)
+        held = await self._object("POST", f"/rigs/{quote(rig)}/lease", json=body)
+        given = held.pop("secret", None)
+        if action == "request":
+            lease.requested = given
+        elif given is not None:
+            self._leases[rig] = _Lease(held["epoch"], held["sequence"], given)
         return held
+
+    async def wait_lease(self, rig: str) -> dict[str, Any]:
+        """Wait until the lease that was requested is granted; returns the session then."""
+
+        def granted(session: dict[str, Any]) -> bool:
+            lease = session["lease"]
+            return lease["holder"] == self.name and self.name not in lease["requested_by"]
+
+        session = await self._wait(rig, granted)
+        held, lease = session["lease"], self._lease(rig)
+        self._leases[rig] = _Lease(held["epoch"], held["sequence"], lease.requested)
+        return session
 
     async def release_lease(self, rig: str) -> dict[str, Any]:
         """Give the lease up."""
-        return await self._object("DELETE", f"/rigs/{quote(rig)}/lease")
+        held = await self._object("POST", f"/rigs/{quote(rig)}/lease", json=self._proving(rig, "release"))
+        self._leases.pop(rig, None)
+        return held
 
     async def command(self, rig: str, command: str, **args: Any) -> dict[str, Any]:
         """Command the session under the lease."""
@@ -136,13 +168,15 @@ class Client:
 
     async def wait_state(self, rig: str, *states: str) -> dict[str, Any]:
         """Follow the session until it is in one of `states`; returns it then."""
+        return await self._wait(rig, lambda session: session["state"] in states)
+
+    async def _wait(self, rig: str, there: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         async with self.stream(rig, topics=["session"]) as socket:
             async for text in socket:
-                message = json.loads(text)
-                session: dict[str, Any] | None = message.get("session")
-                if session is not None and session["state"] in states:
+                session: dict[str, Any] | None = json.loads(text).get("session")
+                if session is not None and there(session):
                     return session
-        raise ClientError(f"the stream of {rig} ended before the session was {' or '.join(states)}")
+        raise ClientError(f"the stream of {rig} ended before the session was as awaited")
 
     @asynccontextmanager
     async def stream(self, rig: str, **subscription: Any) -> AsyncIterator[ClientConnection]:
@@ -175,6 +209,13 @@ class Client:
                 yield socket
         except (ConnectionClosed, InvalidHandshake, OSError) as error:
             raise ClientError(f"the live source of {rig} at {self.url} broke off: {error}") from error
+
+    def _proving(self, rig: str, action: str) -> dict[str, Any]:
+        """The body of an action under the lease."""
+        secret = self._lease(rig).secret
+        if secret is None:
+            raise ClientError(f"{action}: this client does not hold the lease of {rig}")
+        return {"action": action, "secret": secret}
 
     def _lease(self, rig: str) -> "_Lease":
         return self._leases.setdefault(rig, _Lease())

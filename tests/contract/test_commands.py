@@ -61,7 +61,7 @@ def _refuses(operator: Operator, state: State, args: dict[Command, dict[str, Any
     for command in Command:
         if commands.cell(command, state) != "409":
             continue
-        operator.server.http.post(f"/rigs/{operator.rig}/lease", json={"action": "renew"})
+        operator.lease()
         answer = operator.command(command, **args.get(command, {}))
         assert answer.status_code == 409, (state, command, answer.text)
         problem = answer.json()

@@ -54,7 +54,7 @@ def test_the_plain_client_is_answered_and_followed(server: LiveServer, port: int
 
     def renew() -> None:
         while not over.wait(1.0):
-            server.http.post("/rigs/vertical-4/lease", json={"action": "renew"})
+            operator.lease()
 
     renewing = threading.Thread(target=renew)
     renewing.start()

@@ -51,7 +51,7 @@ def _flown_on_a_full_disk(server: LiveServer, disk: Path) -> None:
     assert server.http.post("/plans", json=body).status_code in (202, 507)  # a row may find room in the log's last page
     assert server.http.get("/plans").status_code == 200
     assert server.http.get(f"/plans/{plan['id']}/samples").status_code == 200
-    assert server.http.post(f"/rigs/{RIG}/lease", json={"action": "renew"}).status_code == 200
+    assert operator.lease().status_code == 200
     assert operator.session()["state"] == "running"
 
     ballast.unlink()

@@ -20,7 +20,6 @@ from fullpose_server.runtime.live.packets import (
     decode_reply,
     encode_sample,
 )
-from fullpose_server.runtime.supervisor.rig_client import RigHost
 from tests.fullpose_server.runtime import rigs
 from tests.fullpose_server.runtime.live.swing import flight
 from tests.fullpose_server.runtime.rigs import config_of, hosted, within_limits
@@ -45,7 +44,7 @@ def planners(of: int) -> list[int]:
     return found
 
 
-async def follow(host: RigHost, source: socket.socket, replies: list[LiveReply]) -> None:
+async def follow(operator: rigs.Operator, source: socket.socket, replies: list[LiveReply]) -> None:
     """Send the swing at 500 Hz and gather the replies, until cancelled."""
     started, sequence = time.monotonic(), 0
     while True:
@@ -61,7 +60,7 @@ async def follow(host: RigHost, source: socket.socket, replies: list[LiveReply])
             assert reply is not None
             replies.append(reply)
         if sequence % 200 == 0:
-            await host.lease("renew", "operator")
+            await operator.renew()
         await asyncio.sleep(0.002)
 
 
@@ -81,7 +80,7 @@ def test_a_planner_that_dies_is_told_and_costs_foresight_alone(tmp_path: Path) -
 
             with host.live_socket() as source:
                 await operator.must("go_live")
-                flying = asyncio.create_task(follow(host, source, replies))
+                flying = asyncio.create_task(follow(operator, source, replies))
                 await soon(lambda: len(followed()) > 100)
                 os.kill(planner, signal.SIGKILL)
                 await soon(lambda: "preview_late" in [alarm.code for alarm in host.snapshot().alarms])

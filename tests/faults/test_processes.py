@@ -152,7 +152,7 @@ def test_a_killed_recorder_loses_no_more_than_a_chunk_and_is_replaced_at_rest(tm
                 if host.snapshot().health.recorder.alive:
                     break
                 await asyncio.sleep(0.2)
-                await host.lease("renew", operator.who)
+                await operator.renew()
             await operator.must("arm")
         numbers = messages(next(iter((tmp_path / "runs").iterdir())))
         assert (np.diff(numbers) == 1).all()

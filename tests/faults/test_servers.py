@@ -38,7 +38,7 @@ async def main(settings, plan):
     await operator.fly(Path(plan))
     print("running", host.snapshot().health.rig_pid, flush=True)
     while True:
-        await host.lease("renew", operator.who)
+        await operator.renew()
         await asyncio.sleep(0.1)
 
 asyncio.run(main(*sys.argv[1:]))

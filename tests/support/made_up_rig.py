@@ -17,8 +17,10 @@ from fullpose_server.runtime.loop.clock import MadeUpClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
 from fullpose_server.runtime.loop.leisure import Leisure
 from fullpose_server.runtime.loop.process import assemble
-from fullpose_server.session.lease import LeaseToken
+from fullpose_server.session.lease import LeaseToken, proof_of
 from fullpose_server.session.states import State
+
+PROOF = proof_of("anna's secret")
 
 
 class Link:
@@ -110,8 +112,8 @@ class MadeUpRig:
 
     def ask(self, op: str, command: str, args: dict[str, Any], action: str = "") -> messages.Answer:
         self.number += 1
-        token = LeaseToken(self.epoch, self.sequence)
-        return self.answer(messages.Request(self.number, op, "anna", command, args, token, action, None))
+        token = LeaseToken(self.epoch, self.sequence, PROOF)
+        return self.answer(messages.Request(self.number, op, "anna", command, args, token, action, None, PROOF))
 
     def take(self) -> None:
         lease = self.ask("lease", "", {}, "take").lease

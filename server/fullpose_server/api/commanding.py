@@ -5,10 +5,9 @@ from collections.abc import Coroutine
 from typing import Any
 
 from fullpose_server.api.deps import Services
-from fullpose_server.api.schemas.session import LeaseToken
 from fullpose_server.api.stopping import NOTHING_RUNS, audit_entry
 from fullpose_server.errors import FileError, NotFoundError
-from fullpose_server.formats.plan_folder import rig_hash
+from fullpose_server.formats.plan_folder import FORMAT, MAKE_AGAIN, rig_hash
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.session.errors import IllegalCommandError
 from fullpose_server.session.states import Command, State
@@ -25,6 +24,14 @@ def by_priority(services: Services, rig: str, command: Command, who: str) -> Cor
         return reply
 
     return replied()
+
+
+def plan_refusal(result: dict[str, Any]) -> str | None:
+    """Why a plan that was made cannot be flown, by what its row has of it; None where it can."""
+    if result and result.get("format") != FORMAT:
+        return f"it was made by an earlier Fullpose, whose hash does not cover all that moves the rig: {MAKE_AGAIN}"
+    refusal: str | None = result.get("refusal")
+    return refusal
 
 
 async def with_rig_file(services: Services, rig: str, args: dict[str, Any]) -> dict[str, Any]:
@@ -49,9 +56,8 @@ def audit(
     who: str,
     word: str,
     args: dict[str, Any],
-    token: LeaseToken | None,
+    lease: tuple[int, int] | None,
     reply: Reply,
 ) -> None:
-    """Have written down who commanded what, and what came of it; nobody waits for that."""
-    lease = None if token is None else (token.epoch, token.sequence)
+    """Have written down who commanded what, and what came of it; nobody waits for that. `lease`: epoch, sequence."""
     services.trail.follow(audit_entry(rig, who, word, reply, args, lease))

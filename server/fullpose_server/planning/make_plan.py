@@ -177,6 +177,7 @@ def _write(
         "feasible": report["feasible"],
         "refusal": refusal,
         "plan_hash": folder.info.plan_hash,
+        "format": folder.info.format,
         "samples": n,
         "duration_s": folder.info.duration_s,
         "lead_in_s": leads[0] / request.rate_hz,

@@ -14,6 +14,10 @@ class PayloadMeshError(SceneError):
         self.why = why
 
 
+class SceneSocketError(SceneError):
+    """viser cannot be kept to a socket that no browser can open."""
+
+
 class UnknownSceneError(SceneError):
     """No scene of that name is running."""
 

@@ -6,6 +6,7 @@ inclusion's dependencies. viser's page finds its WebSocket from its own address,
 
 import asyncio
 import http.client
+import socket as sockets
 from urllib.parse import quote, urlsplit
 
 import anyio
@@ -14,9 +15,10 @@ from fastapi import APIRouter, Request, Response, WebSocket
 from fastapi.responses import PlainTextResponse, RedirectResponse
 from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocketDisconnect
-from websockets.asyncio.client import ClientConnection, connect
+from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.typing import Subprotocol
 
+from fullpose_server.runtime.contract.rig_paths import SocketAddress
 from fullpose_server.scene.errors import UnknownSceneError
 from fullpose_server.scene.scenes import SceneServer
 
@@ -30,10 +32,24 @@ QUEUE = 8  # messages held for a slow browser; behind them, TCP makes viser itse
 MESSAGE_BYTES = 64 * 1024 * 1024
 
 
-def _port(connection: HTTPConnection, rig: str) -> int | None:
+class _Scene(http.client.HTTPConnection):
+    """To a scene's own socket."""
+
+    def __init__(self, address: SocketAddress) -> None:
+        super().__init__("scene", timeout=10.0)
+        self._address = address
+
+    def connect(self) -> None:
+        self.sock = sockets.socket(sockets.AF_UNIX, sockets.SOCK_STREAM)
+        self.sock.settimeout(self.timeout)
+        with self._address as path:
+            self.sock.connect(path)
+
+
+def _address(connection: HTTPConnection, rig: str) -> SocketAddress | None:
     scenes: SceneServer = connection.app.state.scenes
     try:
-        return scenes.port(rig)
+        return scenes.address(rig)
     except UnknownSceneError:
         return None
 
@@ -56,13 +72,13 @@ def with_slash(request: Request, rig: str) -> RedirectResponse:
 @router.get("/scene/{rig}/{path:path}")
 async def page(request: Request, rig: str, path: str) -> Response:
     """Forward a GET to the rig's viser server."""
-    port = _port(request, rig)
-    if port is None:
+    address = _address(request, rig)
+    if address is None:
         return PlainTextResponse(f"no scene {rig!r} is running\n", status_code=404)
     if _foreign(request):
         return PlainTextResponse("a scene is shown from this server only\n", status_code=400)
     try:
-        status, headers, body = await anyio.to_thread.run_sync(_get, port, "/" + quote(path))
+        status, headers, body = await anyio.to_thread.run_sync(_get, address, "/" + quote(path))
     except (OSError, http.client.HTTPException):
         return PlainTextResponse(f"the scene of {rig!r} does not answer\n", status_code=502)
     if headers.get("content-type", "").startswith("text/html"):
@@ -72,8 +88,8 @@ async def page(request: Request, rig: str, path: str) -> Response:
     return Response(body, status, passed)
 
 
-def _get(port: int, path: str) -> tuple[int, dict[str, str], bytes]:
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10.0)
+def _get(address: SocketAddress, path: str) -> tuple[int, dict[str, str], bytes]:
+    connection = _Scene(address)
     try:
         connection.request("GET", path, headers={"Accept-Encoding": "identity"})
         answer = connection.getresponse()
@@ -89,20 +105,16 @@ async def socket(browser: WebSocket, rig: str) -> None:
 
     viser's page asks for its own address without the slash at the end.
     """
-    port = _port(browser, rig)
-    if port is None:
+    address = _address(browser, rig)
+    if address is None:
         await browser.close(4404, f"no scene {rig!r} is running")
         return
     offered = [Subprotocol(name) for name in browser.scope.get("subprotocols", [])]
     try:
-        viser = await connect(
-            f"ws://127.0.0.1:{port}/",
-            subprotocols=offered or None,
-            compression=None,
-            max_size=MESSAGE_BYTES,
-            max_queue=QUEUE,
-            proxy=None,
-        )
+        with address as path:
+            viser = await unix_connect(
+                path, subprotocols=offered or None, compression=None, max_size=MESSAGE_BYTES, max_queue=QUEUE
+            )
     except (OSError, websockets.InvalidHandshake, TimeoutError):
         await browser.close(4502, f"the scene of {rig!r} does not answer")
         return

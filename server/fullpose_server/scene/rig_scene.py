@@ -21,10 +21,12 @@ from trimesh.visual.material import PBRMaterial
 
 from fullpose._typing import Array
 from fullpose.rig import Rig
+from fullpose_server.runtime.contract.rig_paths import SocketAddress
 from fullpose_server.scene import palette
 from fullpose_server.scene.machine import Part, build
 from fullpose_server.scene.payload_mesh import load_mesh
 from fullpose_server.scene.pose import Pose, frame_quaternions
+from fullpose_server.scene.private_socket import PrivateSocket, host_for
 from fullpose_server.scene.shapes import arrow, joined
 
 APART_RAD = np.radians(0.15)  # commanded and measured closer than this look the same: no ghost
@@ -52,17 +54,18 @@ def _quiet() -> Iterator[None]:
 
 
 class RigScene:
-    """A viser server on loopback that shows one rig. Not thread-safe: one thread writes."""
+    """A viser server on a private socket that shows one rig. Not thread-safe: one thread writes."""
 
     def __init__(
         self, rig: Rig, name: str, size_m: tuple[float, float, float] | None, mesh: Path | None = None
     ) -> None:
-        """Start serving. Raises `PayloadMeshError` where the mesh cannot be shown."""
+        """Start serving. Raises `PayloadMeshError` where the mesh cannot be shown, `SceneSocketError`, OSError."""
         payload = None if mesh is None else load_mesh(mesh)
         self._rig = rig
         self._machine = build(rig.geometry, size_m or (0.3, 0.2, 0.2), payload)
-        with _quiet():
-            self._server = _Viser(host="127.0.0.1", port=0, label=name, verbose=False)
+        self._socket = PrivateSocket()
+        with _quiet(), host_for(self._socket) as host:
+            self._server = _Viser(host=host, port=0, label=name, verbose=False)
         self._shown: Pose | None = None
         self._previewed: tuple[Array, Array | None] | None = None
         with self._server.atomic():
@@ -73,10 +76,9 @@ class RigScene:
             self._triads()
         self.show(Pose(rig.home, None, None))
 
-    @property
-    def port(self) -> int:
-        """The port viser listens on, loopback only."""
-        return int(self._server.get_port())
+    def address(self) -> SocketAddress:
+        """Of the socket that viser listens on."""
+        return self._socket.address()
 
     @property
     def viewers(self) -> int:
@@ -87,6 +89,7 @@ class RigScene:
         """Close the server and every browser's connection to it."""
         with _quiet():
             self._server.stop()
+        self._socket.close()
 
     def show(self, pose: Pose) -> bool:
         """Bring the nodes to `pose`; returns whether anything was sent."""

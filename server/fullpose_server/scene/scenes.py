@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike
 
 from fullpose.rig import Rig
 from fullpose_server.formats.rig_file import DEFAULT_SIZE_M, Payload
+from fullpose_server.runtime.contract.rig_paths import SocketAddress
 from fullpose_server.scene.errors import UnknownSceneError
 from fullpose_server.scene.pose import Pose
 
@@ -61,8 +62,8 @@ class SceneServer:
         name: str,
         latest: Callable[[], Any] | None = None,
         folder: Path | None = None,
-    ) -> int:
-        """Serve `rig` as `name`; returns the loopback port.
+    ) -> None:
+        """Serve `rig` as `name`.
 
         `latest` answers with the newest telemetry sample or None, from this class's thread; without it, call `update`.
         `folder` is where the payload's mesh file is. A scene of that name that is running is replaced. Raises
@@ -80,11 +81,10 @@ class SceneServer:
                 self._writer.start()
         if before is not None:
             before.scene.stop()
-        return scene.port
 
-    def port(self, name: str) -> int:
-        """The loopback port of a scene. Raises `UnknownSceneError`."""
-        return self._running(name).scene.port
+    def address(self, name: str) -> SocketAddress:
+        """Of the socket that a scene is reached by. Raises `UnknownSceneError`."""
+        return self._running(name).scene.address()
 
     def viewers(self, name: str) -> int:
         """How many browsers look at a scene. Raises `UnknownSceneError`."""

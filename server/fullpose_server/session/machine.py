@@ -11,8 +11,8 @@ from fullpose_server.session import table
 from fullpose_server.session.actions import Given, L, M, Order, order_of
 from fullpose_server.session.alarms import Alarm, AlarmBook, Severity, Shelf
 from fullpose_server.session.binding import Binding
-from fullpose_server.session.errors import BindingError, IllegalCommandError, NotReadyError, SessionError
-from fullpose_server.session.lease import Lease, LeaseBook, LeaseToken
+from fullpose_server.session.errors import BindingError, IllegalCommandError, LeaseError, NotReadyError
+from fullpose_server.session.lease import Lease, LeaseAction, LeaseBook, LeaseToken
 from fullpose_server.session.states import IN_MOTION, NEEDS_NO_LEASE, Action, Command, Event, State
 from fullpose_server.session.table import When
 
@@ -85,10 +85,10 @@ class SessionMachine(Generic[L, M]):
         """The lease's epoch: drives refuse writes of an older one."""
         return self._lease.epoch
 
-    def check(self, command: Command, who: str, token: LeaseToken | None, now: float) -> None:
+    def check(self, command: Command, token: LeaseToken | None, now: float) -> None:
         """Raise the `SessionError` with which `command` would be refused; changes nothing."""
         if command not in NEEDS_NO_LEASE:
-            self._lease.checked(who, token, now)
+            self._lease.checked(token, now)
         if command not in table.ANYWHERE and self._find(command) is None:
             raise IllegalCommandError(self.state, command, self.allowed())
         if command in (Command.START, Command.GO_LIVE) and self.binding is not None:
@@ -118,7 +118,7 @@ class SessionMachine(Generic[L, M]):
         forbid it, or where what it needs was not given.
         """
         given = given or Given()
-        self.check(command, who, token, now)
+        self.check(command, token, now)
         if command is Command.LOAD:
             self._check_loadable(given.binding)
         if command is Command.ARM:
@@ -127,7 +127,7 @@ class SessionMachine(Generic[L, M]):
         row = self._find(command)
         orders = () if row is None else tuple(order_of(word, given, who) for word in row.actions)
         if command not in NEEDS_NO_LEASE:
-            self._lease = self._lease.checked(who, token, now)
+            self._lease = self._lease.checked(token, now)
         if alarms is not self.alarms:
             self.alarms = alarms
             self.revision += 1
@@ -184,27 +184,33 @@ class SessionMachine(Generic[L, M]):
             self.alarms = alarms
             self.revision += 1
 
-    def lease_action(self, action: str, who: str, now: float, to: str | None = None) -> Lease:
-        """take, takeover (by force), release, renew, request, grant. Raises `LeaseError` or `SessionError`."""
-        book = self._lease
-        if action == "take":
-            book = book.take(who, now)
-        elif action == "takeover":
-            book = book.take(who, now, force=True)
-        elif action == "release":
-            book = book.release(who, now)
-        elif action == "renew":
-            book = book.renew(who, now)
-        elif action == "request":
-            book = book.request(who)
-        elif action == "grant":
-            book = book.grant(who, now, to)
-        else:
-            raise SessionError(f"no lease action {action!r}: take, takeover, release, renew, request, grant")
-        if (book.epoch, book.requested_by) != (self._lease.epoch, self._lease.requested_by):
+    def lease_action(
+        self, action: LeaseAction, who: str, now: float, proof: str | None, to: str | None = None
+    ) -> Lease:
+        """`proof` is of the lease's secret, or of the new one where the action gives one (`GIVES_SECRET`).
+
+        `to`: to whom it is granted. Raises `LeaseError`.
+        """
+        book = self._lease_after(action, who, now, proof, to)
+        if (book.epoch, book.asked) != (self._lease.epoch, self._lease.asked):
             self.revision += 1
         self._lease = book
         return book.view(now)
+
+    def _lease_after(self, action: LeaseAction, who: str, now: float, proof: str | None, to: str | None) -> LeaseBook:
+        book = self._lease
+        match action:
+            case LeaseAction.RELEASE:
+                return book.release(proof, now)
+            case LeaseAction.RENEW:
+                return book.renew(proof, now)
+            case LeaseAction.GRANT:
+                return book.grant(proof, now, to)
+        if proof is None:
+            raise LeaseError("lease_needed", f"{action} needs a secret of its own")
+        if action is LeaseAction.REQUEST:
+            return book.request(who, proof)
+        return book.take(who, proof, now, force=action is LeaseAction.TAKEOVER)
 
     def silence(self, now: float) -> tuple[Event, ...]:
         """The stages that fall due because the lease's owner is silent; report each as an event, with an alarm."""

@@ -58,16 +58,24 @@ class Operator:
     def __init__(self, server: LiveServer, rig: str = "vertical-4") -> None:
         self.server, self.rig = server, rig
         self.epoch = self.sequence = 0
+        self.secret = ""
 
     def take(self, action: str = "takeover") -> None:
         held = self.server.http.post(f"/rigs/{self.rig}/lease", json={"action": action}).json()
-        if held["epoch"] != self.epoch:
-            self.epoch, self.sequence = held["epoch"], held["sequence"]
+        self.epoch, self.sequence, self.secret = held["epoch"], held["sequence"], held["secret"]
+
+    def lease(self, action: str = "renew", **more: Any) -> httpx.Response:
+        """An action under the lease."""
+        body = {"action": action, "secret": self.secret, **more}
+        return self.server.http.post(f"/rigs/{self.rig}/lease", json=body)
+
+    def token(self) -> dict[str, Any]:
+        """What the next command shows."""
+        self.sequence += 1
+        return {"epoch": self.epoch, "sequence": self.sequence, "secret": self.secret}
 
     def command(self, word: str, **args: Any) -> httpx.Response:
-        self.sequence += 1
-        lease = {"epoch": self.epoch, "sequence": self.sequence}
-        body = {"command": word, "args": args, "lease": lease}
+        body = {"command": word, "args": args, "lease": self.token()}
         return self.server.http.post(f"/rigs/{self.rig}/commands", json=body)
 
     def session(self) -> dict[str, Any]:
@@ -82,7 +90,7 @@ class Operator:
                 session = self._next(socket_)
                 if session is not None and session["state"] in states:
                     return session
-                self.server.http.post(f"/rigs/{self.rig}/lease", json={"action": "renew"})
+                self.lease()
         raise AssertionError(f"{self.session()['state']} is none of {states}")
 
     @staticmethod

@@ -47,10 +47,7 @@ def euler(t: float) -> tuple[float, float, float]:
 
 
 def opened(stream: ClientConnection, operator: Operator | None = None, **settings: Any) -> dict[str, Any]:
-    lease = None
-    if operator is not None:
-        operator.sequence += 1
-        lease = {"epoch": operator.epoch, "sequence": operator.sequence}
+    lease = None if operator is None else operator.token()
     stream.send(json.dumps({"type": "open", "lease": lease} | settings))
     answer: dict[str, Any] = json.loads(stream.recv(timeout=30.0))
     return answer
@@ -71,7 +68,7 @@ def fly(
         count += 1
         if t - renewed > 1.0:
             renewed = t
-            operator.server.http.post(f"/rigs/{RIG}/lease", json={"action": "renew"})
+            operator.lease()
         while len(replies) < sent:
             replies.append(stream.recv(timeout=60.0))
             followed += enough(replies[-1])
@@ -173,7 +170,7 @@ def test_what_is_no_sample_is_a_problem_and_the_connection_goes_on(server: LiveS
         for settings, word in (({"method": "magic"}, "magic"), ({"method": "lagrange"}, "limits")):
             answer = opened(stream, operator, **settings)
             assert word in answer["problem"]["detail"]
-        assert opened(stream, None, lease={"epoch": 0, "sequence": 1})["problem"]["status"] == 403
+        assert opened(stream, None, lease={"epoch": 0, "sequence": 1, "secret": "guessed"})["problem"]["status"] == 403
         opened(stream)
         for data in (
             '{"type": "sample", "time_s": 1.0}',

@@ -92,12 +92,12 @@ def test_without_the_lease_only_stop_and_estop(operator: Operator, server: LiveS
         server.http.post(f"{url}/commands", json={"command": "load", "args": {"plan": server.plan()["id"]}}), 403
     )
     assert body["type"].endswith("lease-needed")
-    stale = {"command": "unload", "lease": {"epoch": operator.epoch, "sequence": 0}}
+    stale = {"command": "unload", "lease": operator.token() | {"sequence": 0}}
     assert refused(server.http.post(f"{url}/commands", json=stale), 409)["type"].endswith("stale-command")
     other = {"X-Fullpose-Client": "bob"}
     assert refused(server.http.post(f"{url}/lease", headers=other))["type"].endswith("lease-held")
     assert server.http.post(f"{url}/lease", json={"action": "request"}, headers=other).json()["requested_by"] == ["bob"]
-    assert server.http.post(f"{url}/lease", json={"action": "grant"}).json()["holder"] == "bob"
+    assert operator.lease("grant").json()["holder"] == "bob"
     assert server.http.post(f"{url}/estop", headers=other).json()["state_after"] == "estopped"
     operator.take("takeover")
     assert operator.command("acknowledge").status_code == 200
@@ -112,18 +112,19 @@ def test_the_greatest_sequence_is_done_audited_and_the_last_of_its_epoch(
     line = server.http.get("/audit", params={"limit": 1}).json()[0]
     assert (line["command"], line["accepted"], line["lease_sequence"]) == ("acknowledge", True, 2**63 - 1)
     assert refused(operator.command("acknowledge"), 422)["errors"][0]["where"].endswith("lease.sequence")
-    assert server.http.delete("/rigs/vertical-4/lease").json()["sequence"] == 0
+    assert operator.lease("release").json()["sequence"] == 0
 
 
 def test_a_late_a_doubled_and_a_former_holder_s_command_are_refused_and_audited(
     operator: Operator, server: LiveServer
 ) -> None:
     def sent(epoch: int, sequence: int) -> Any:
-        body = {"command": "acknowledge", "lease": {"epoch": epoch, "sequence": sequence}}
+        lease = {"epoch": epoch, "sequence": sequence, "secret": operator.secret}
+        body = {"command": "acknowledge", "lease": lease}
         return server.http.post("/rigs/vertical-4/commands", json=body)
 
     former = operator.epoch
-    server.http.delete("/rigs/vertical-4/lease")
+    operator.lease("release")
     operator.take()
     assert operator.epoch > former
     newest = operator.sequence + 5
@@ -188,10 +189,12 @@ def test_load_takes_only_flyable_plans_of_this_rig(operator: Operator, server: L
         {"command": "move", "args": {"target_deg": [1, 2, 3]}},
         {"command": "arm", "args": {"speed": 1}},
         {"command": "arm", "args": {"plan_hash": "0" * 65}},
-        {"command": "arm", "lease": {"epoch": -1, "sequence": 0}},
-        {"command": "arm", "lease": {"epoch": 2**63, "sequence": 0}},
-        {"command": "arm", "lease": {"epoch": 0, "sequence": 2**63}},
-        {"command": "arm", "lease": {"epoch": 0, "sequence": 2**70}},
+        {"command": "arm", "lease": {"epoch": -1, "sequence": 0, "secret": "a"}},
+        {"command": "arm", "lease": {"epoch": 2**63, "sequence": 0, "secret": "a"}},
+        {"command": "arm", "lease": {"epoch": 0, "sequence": 2**63, "secret": "a"}},
+        {"command": "arm", "lease": {"epoch": 0, "sequence": 2**70, "secret": "a"}},
+        {"command": "arm", "lease": {"epoch": 0, "sequence": 0}},
+        {"command": "arm", "lease": {"epoch": 0, "sequence": 0, "secret": "not a secret"}},
         {"command": "acknowledge", "args": {"numbers": [2**63]}},
         {"command": "acknowledge", "args": {"numbers": list(range(257))}},
         {"command": "load", "args": {"live": {"options": {f"option_{k}": 1 for k in range(8000)}}}},

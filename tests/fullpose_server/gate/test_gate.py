@@ -31,8 +31,8 @@ class Served:
         self.process, self.url = process, url
         self.at = ("127.0.0.1", int(urlsplit(url).port or 0))
         self.http = httpx.Client(base_url=url, timeout=60.0, headers={"X-Fullpose-Client": "ann"})
-        epoch = self.http.post(f"{RIG}/lease").json()["epoch"]
-        token = {"epoch": epoch, "sequence": 1}
+        held = self.http.post(f"{RIG}/lease").json()
+        token = {"epoch": held["epoch"], "sequence": 1, "secret": held["secret"]}
         assert self.http.post(f"{RIG}/commands", json={"command": "connect", "lease": token}).is_success
 
     @property

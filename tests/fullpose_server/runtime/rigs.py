@@ -18,7 +18,7 @@ from fullpose_server.runtime.contract.messages import Reply, Snapshot
 from fullpose_server.runtime.contract.telemetry import Flag
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.alarms import Alarm, Severity
-from fullpose_server.session.lease import LeaseToken
+from fullpose_server.session.lease import LeaseAction, LeaseToken, proof_of
 from fullpose_server.session.states import IN_MOTION
 from tests.support.waiting import answered, soon
 
@@ -55,14 +55,18 @@ class Operator:
         self.who = who
         self.epoch = 0
         self.sequence = 0
+        self.proof = proof_of(f"the secret of {who}")
 
     async def take(self, action: str = "take") -> None:
-        lease = await self.host.lease(action, self.who)
+        lease = await self.host.lease(LeaseAction(action), self.who, self.proof)
         self.epoch, self.sequence = lease.epoch, lease.sequence
+
+    async def renew(self) -> None:
+        await self.host.lease(LeaseAction.RENEW, self.who, self.proof)
 
     async def say(self, command: str, **args: Any) -> Reply:
         self.sequence += 1
-        return await self.host.command(command, args, self.who, LeaseToken(self.epoch, self.sequence))
+        return await self.host.command(command, args, self.who, LeaseToken(self.epoch, self.sequence, self.proof))
 
     async def must(self, command: str, **args: Any) -> Reply:
         reply = await self.say(command, **args)
@@ -98,7 +102,7 @@ class Operator:
                 return snapshot
             assert asyncio.get_running_loop().time() < deadline, f"still {snapshot.state}: {snapshot.alarms}"
             if self.epoch and snapshot.lease.holder == self.who:
-                await self.host.lease("renew", self.who)
+                await self.renew()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self.host.wait_change(snapshot.revision), 0.2)
 

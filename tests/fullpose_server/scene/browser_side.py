@@ -7,8 +7,9 @@ from typing import Any
 import msgspec
 import numpy as np
 import zstandard
-from websockets.sync.client import ClientConnection
+from websockets.sync.client import ClientConnection, unix_connect
 
+from fullpose_server.runtime.contract.rig_paths import SocketAddress
 from fullpose_server.runtime.contract.telemetry import SAMPLE
 from tests.support.sockets import connect
 
@@ -54,10 +55,14 @@ CAMERA = browser_message(
 class Viewer:
     """A WebSocket client of viser that keeps what it was told last of every node."""
 
-    def __init__(self, address: str) -> None:
-        self.socket: ClientConnection = connect(
-            address, subprotocols=[_subprotocol()], max_size=None, compression=None, proxy=None
-        )
+    def __init__(self, address: str | SocketAddress) -> None:
+        """At the server's address, or at a scene's own socket."""
+        self.socket: ClientConnection
+        if isinstance(address, str):
+            self.socket = connect(address, subprotocols=[subprotocol()], compression=None)
+        else:
+            with address as path:
+                self.socket = unix_connect(path, subprotocols=[subprotocol()], max_size=None, compression=None)
         self.nodes: dict[str, dict[str, Any]] = {}
         self.frames = 0
 
@@ -103,7 +108,7 @@ class Viewer:
         return turned
 
 
-def _subprotocol() -> Any:
+def subprotocol() -> Any:
     import viser
 
     return f"viser-v{viser.__version__}"

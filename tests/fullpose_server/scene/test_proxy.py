@@ -18,7 +18,8 @@ def test_page_comes_through_without_visers_controls(served: Served) -> None:
     assert answer.status_code == 200
     assert answer.headers["content-type"].startswith("text/html")
     assert answer.headers["content-security-policy"] == "frame-ancestors 'self'"
-    direct = httpx.get(f"http://127.0.0.1:{served.scenes.port('vertical-4')}/").content
+    with served.scenes.address("vertical-4") as path, httpx.Client(transport=httpx.HTTPTransport(uds=path)) as client:
+        direct = client.get("http://scene/").content
     assert answer.content == direct.replace(b"</head>", HIDE_CHROME + b"</head>", 1) != direct
 
 

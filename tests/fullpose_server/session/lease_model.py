@@ -1,5 +1,6 @@
 """The part of the session's model that is about time and the lease; `test_model` has the rest."""
 
+import pytest
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, rule
 
@@ -8,6 +9,7 @@ from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import (
     LeaseError,
 )
+from fullpose_server.session.lease import GIVES_SECRET, LeaseAction, proof_of
 from fullpose_server.session.machine import SessionMachine, SilencePolicy
 from fullpose_server.session.states import Event, State
 
@@ -16,6 +18,7 @@ RIG = ("rig", "a" * 64)
 STAGES = ((5.0, Event.SILENT_HOLD), (15.0, Event.SILENT_STOP), (60.0, Event.SILENT_DISARM))
 SILENT_S = STAGES[0][0]
 PEOPLE = st.sampled_from(["anna", "bert"])
+SHOWN = st.sampled_from(["held", "held", "held", "former", "asked", "guessed", None])
 
 
 class LeaseModel(RuleBasedStateMachine):
@@ -32,7 +35,11 @@ class LeaseModel(RuleBasedStateMachine):
         self.holder: str | None = None
         self.epoch = self.sequence = self.stage = 0
         self.heard = 0.0
-        self.asked: list[str] = []
+        self.asked: dict[str, str] = {}  # who asked, first first: the proof of the secret that is to be theirs
+        self.proof: str | None = None  # of the holder's secret
+        self.former: list[str] = []  # of secrets that hold no more
+        self.secrets = 0
+        self.commander = ""  # who gave the newest command
         self.standing: list[Alarm] = []
         self.shelves: dict[str, float] = {}  # until when [s], by the code
         self.past: dict[int, Alarm] = {}
@@ -57,43 +64,76 @@ class LeaseModel(RuleBasedStateMachine):
 
     # --- the lease ---
 
-    @rule(action=st.sampled_from(["take", "takeover", "release", "renew", "request", "grant"]), who=PEOPLE)
-    def lease(self, action: str, who: str) -> None:
-        code = self.lease_refusal(action, who)
-        before = vars(self.machine).copy()
-        try:
-            self.machine.lease_action(action, who, self.now)
-        except LeaseError as refusal:
-            assert refusal.code == code  # noqa: PT017
+    @rule(action=st.sampled_from(list(LeaseAction)), who=PEOPLE, shown=SHOWN)
+    def lease(self, action: LeaseAction, who: str, shown: str | None = "held") -> None:
+        proof = self.fresh() if action in GIVES_SECRET and shown is not None else self.shown(shown)
+        code = self.lease_refusal(action, proof)
+        if code is not None:
+            before = vars(self.machine).copy()
+            with pytest.raises(LeaseError) as refused:
+                self.machine.lease_action(action, who, self.now, proof)
+            assert refused.value.code == code
+            assert not any(known in str(refused.value) for known in self.known())
             assert vars(self.machine) == before
             return
-        assert code is None
-        if action == "request":
-            if who not in (self.holder, *self.asked):
-                self.asked.append(who)
-                self.revision += 1
+        self.machine.lease_action(action, who, self.now, proof)
+        assert proof is not None
+        if action is LeaseAction.REQUEST:
+            self.asked[who] = proof
+            self.revision += 1
             return
         self.heard = self.now
-        if action == "grant":
-            self.hand_to(self.asked[0])
-        elif action == "release":
-            self.hand_to(None)
-        elif action != "renew" and self.holder != who:
-            self.hand_to(who)
+        if action is LeaseAction.GRANT:
+            self.hand_to(*next(iter(self.asked.items())))
+        elif action is LeaseAction.RELEASE:
+            self.hand_to(None, None)
+        elif action is not LeaseAction.RENEW:
+            self.hand_to(who, proof)
 
-    def lease_refusal(self, action: str, who: str) -> str | None:
-        if action == "take":
-            in_use = self.holder not in (None, who) and self.now - self.heard <= SILENT_S
+    def fresh(self) -> str:
+        self.secrets += 1
+        return proof_of(f"secret {self.secrets}")
+
+    def shown(self, which: str | None) -> str | None:
+        """The proof that somebody shows: of the holder's secret, of an earlier one, of one that was not granted."""
+        match which:
+            case "held":
+                return self.proof or proof_of("nobody's")
+            case "former":
+                return self.former[-1] if self.former else proof_of("nobody's")
+            case "asked":
+                return next(iter(self.asked.values()), proof_of("nobody's"))
+            case "guessed":
+                return ""
+            case _:
+                return None
+
+    def known(self) -> list[str]:
+        """Every proof there was."""
+        return [*self.former, *self.asked.values(), *([] if self.proof is None else [self.proof])]
+
+    def lease_refusal(self, action: LeaseAction, proof: str | None) -> str | None:
+        if proof is None:
+            return "lease_needed"
+        if action is LeaseAction.TAKE:
+            in_use = self.holder is not None and self.now - self.heard <= SILENT_S
             return "lease_held" if in_use else None
-        if action == "request":
+        if action is LeaseAction.REQUEST:
             return "lease_free" if self.holder is None else None
-        if action != "takeover" and self.holder != who:
+        if action is LeaseAction.TAKEOVER:
+            return None
+        if self.holder is None:
+            return "lease_needed"
+        if proof != self.proof:
             return "lease_lost"
-        return "lease_not_requested" if action == "grant" and not self.asked else None
+        return "lease_not_requested" if action is LeaseAction.GRANT and not self.asked else None
 
-    def hand_to(self, who: str | None) -> None:
-        self.holder, self.epoch, self.sequence = who, self.epoch + 1, 0
-        self.asked = [name for name in self.asked if name != who]
+    def hand_to(self, who: str | None, proof: str | None) -> None:
+        if self.proof is not None:
+            self.former.append(self.proof)
+        self.holder, self.proof, self.epoch, self.sequence = who, proof, self.epoch + 1, 0
+        if who is not None:
+            self.asked.pop(who, None)
         self.revision += 1
 
     def event(self, event: Event) -> None:

@@ -11,11 +11,12 @@ from fullpose_server.session.actions import Bind, Given, GoLive, Move, Order, Po
 from fullpose_server.session.alarms import Severity
 from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import BindingError, IllegalCommandError, LeaseError, NotReadyError
-from fullpose_server.session.lease import LeaseToken
+from fullpose_server.session.lease import LeaseAction, LeaseToken, proof_of
 from fullpose_server.session.machine import SessionMachine, SilencePolicy
 from fullpose_server.session.states import Command, Event, State
 
 RIG = ("rig", "a" * 64)
+PROOF = proof_of("anna's secret")
 PLAN = Binding("p", "b" * 64, *RIG)
 LIVE = Binding("live", "c" * 64, *RIG, live=True)
 POLICY = SilencePolicy(5.0, 15.0, 60.0)
@@ -27,13 +28,13 @@ class Session:
     def __init__(self) -> None:
         self.machine: SessionMachine[str, str] = SessionMachine(*RIG, POLICY)
         self.now = 100.0
-        self.epoch = self.machine.lease_action("take", "anna", self.now).epoch
+        self.epoch = self.machine.lease_action(LeaseAction.TAKE, "anna", self.now, PROOF).epoch
         self.sequence = 0
 
     def say(self, command: Command, **rest: Any) -> tuple[Order[str, str], ...]:
         self.sequence += 1
         return self.machine.command(
-            command, "anna", LeaseToken(self.epoch, self.sequence), self.now, self.given(**rest)
+            command, "anna", LeaseToken(self.epoch, self.sequence, PROOF), self.now, self.given(**rest)
         )
 
     def given(self, **rest: Any) -> Given[str, str]:
@@ -66,7 +67,7 @@ def test_an_illegal_command_changes_nothing_and_says_what_is_allowed(state: Stat
             continue
         before = memory(session.machine)
         with pytest.raises(IllegalCommandError) as refused:
-            session.machine.command(command, "anna", LeaseToken(session.epoch, 1000), session.now)
+            session.machine.command(command, "anna", LeaseToken(session.epoch, 1000, PROOF), session.now)
         assert memory(session.machine) == before
         assert (refused.value.state, refused.value.command) == (state, command)
         assert refused.value.allowed == table.allowed(state)
@@ -79,14 +80,18 @@ def test_an_illegal_command_changes_nothing_and_says_what_is_allowed(state: Stat
 )
 def test_a_late_a_doubled_and_a_former_holder_s_command_are_refused(epochs_ago: int, sequence: int, code: str) -> None:
     session = Session()
-    session.machine.lease_action("release", "anna", session.now)  # what was sent before is of a former epoch
-    session.epoch = session.machine.lease_action("take", "anna", session.now).epoch
+    session.machine.lease_action(
+        LeaseAction.RELEASE, "anna", session.now, PROOF
+    )  # what was sent before is of a former epoch
+    session.epoch = session.machine.lease_action(LeaseAction.TAKE, "anna", session.now, PROOF).epoch
     session.sequence = 4
     session.say(Command.CONNECT)
     before = memory(session.machine)
     for command in set(Command) - {Command.STOP, Command.ESTOP}:
         with pytest.raises(LeaseError) as refused:
-            session.machine.command(command, "anna", LeaseToken(session.epoch - epochs_ago, sequence), session.now)
+            session.machine.command(
+                command, "anna", LeaseToken(session.epoch - epochs_ago, sequence, PROOF), session.now
+            )
         assert refused.value.code == code
         assert memory(session.machine) == before
 
@@ -176,7 +181,7 @@ def test_speech_starts_silence_over() -> None:
     session = Session().to(State.RUNNING)
     machine = session.machine
     assert machine.silence(session.now + 6) == (Event.SILENT_HOLD,)
-    machine.lease_action("renew", "anna", session.now + 7)
+    machine.lease_action(LeaseAction.RENEW, "anna", session.now + 7, PROOF)
     assert machine.silence(session.now + 8) == ()
     assert machine.silence(session.now + 13) == (Event.SILENT_HOLD,)
     # A long sleep of the process itself names every stage, in order.
@@ -246,9 +251,9 @@ def test_a_revision_for_every_visible_change() -> None:
     seen.append(machine.revision)
     machine.alarm("x", Severity.WARNING, "", 0.0)
     seen.append(machine.revision)
-    machine.lease_action("request", "bert", session.now)
+    machine.lease_action(LeaseAction.REQUEST, "bert", session.now, proof_of("bert's secret"))
     seen.append(machine.revision)
-    machine.lease_action("renew", "anna", session.now)
+    machine.lease_action(LeaseAction.RENEW, "anna", session.now, PROOF)
     assert seen == sorted(set(seen))
     assert machine.revision == seen[-1]  # a renewal is not news
 

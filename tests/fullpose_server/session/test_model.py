@@ -24,10 +24,10 @@ from fullpose_server.session.errors import (
     NotReadyError,
     SessionError,
 )
-from fullpose_server.session.lease import Lease, LeaseToken
+from fullpose_server.session.lease import Lease, LeaseAction, LeaseToken
 from fullpose_server.session.states import Command, Event, State
 from fullpose_server.session.table import When
-from tests.fullpose_server.session.lease_model import PEOPLE, RIG, SILENT_S, LeaseModel
+from tests.fullpose_server.session.lease_model import PEOPLE, RIG, SHOWN, SILENT_S, LeaseModel
 
 C, S = Command, State
 ACK = C.ACKNOWLEDGE
@@ -72,15 +72,13 @@ class Model(LeaseModel):
         assert len(rows) <= 1
         return rows[0] if rows else None
 
-    def command_refusal(
-        self, command: Command, who: str, token: LeaseToken | None, given: Given[str, str]
-    ) -> Refusal | None:
+    def command_refusal(self, command: Command, token: LeaseToken | None, given: Given[str, str]) -> Refusal | None:
         """What is to be raised, and its code; None where the command is to be done."""
         binding = given.binding
         if command not in FREE:
             if token is None or self.holder is None:
                 return LeaseError, "lease_needed"
-            if token.epoch != self.epoch or who != self.holder:
+            if token.proof != self.proof or token.epoch != self.epoch:
                 return LeaseError, "lease_lost"
             if token.sequence <= self.sequence:
                 return LeaseError, "stale_command"
@@ -110,6 +108,7 @@ class Model(LeaseModel):
         command=st.sampled_from(list(Command)),
         who=PEOPLE,
         shown=st.sampled_from(TOKENS),
+        secret=SHOWN,
         binding=st.sampled_from([None, PLAN, LIVE, OTHER_PLAN, OTHER_RIG]),
         numbers=st.none() | st.frozensets(st.integers(1, 8)),
         shelved=st.none() | st.tuples(st.sampled_from(["a", "b"]), st.floats(1.0, 60.0)),
@@ -122,11 +121,16 @@ class Model(LeaseModel):
         binding: Binding | None,
         numbers: frozenset[int] | None,
         shelved: tuple[str, float] | None = None,
+        secret: str | None = "held",
     ) -> None:
-        token = None if shown is None else LeaseToken(self.epoch + shown[0], self.sequence + shown[1])
+        proof = self.shown(secret)
+        token = None
+        if shown is not None and proof is not None:
+            token = LeaseToken(self.epoch + shown[0], self.sequence + shown[1], proof)
         shelf = None if shelved is None else Shelf(shelved[0], None, self.now, self.now + shelved[1], who)
         made_ready = Given(binding, LOAD, MOVE, numbers, shelf)
-        expected = self.command_refusal(command, who, token, made_ready)
+        expected = self.command_refusal(command, token, made_ready)
+        self.commander = who
         before = vars(self.machine).copy()
         actions: tuple[Order[str, str], ...] = ()
         given: Refusal | None = None
@@ -190,7 +194,7 @@ class Model(LeaseModel):
 
     def say(self, command: Command, binding: Binding | None = None) -> None:
         if self.holder is None:
-            self.lease("take", "anna")
+            self.lease(LeaseAction.TAKE, "anna")
         assert self.holder is not None
         self.command(command, self.holder, (0, 1), binding if command is C.LOAD else None, None)
 
@@ -216,11 +220,11 @@ class Model(LeaseModel):
                 case Bind():
                     assert (order.binding, order.load) == (self.bound, LOAD)
                 case Position():
-                    assert (order.move, order.who) == (MOVE, self.holder)
+                    assert (order.move, order.who) == (MOVE, self.commander)
                 case Move():
                     assert order.move is MOVE
                 case GoLive():
-                    assert order.who == self.holder
+                    assert order.who == self.commander
         self.state = row.target
         self.revision += 1
         if self.state not in LATCHED:
@@ -284,6 +288,7 @@ class Model(LeaseModel):
         left = None if self.holder is None else max(0.0, self.heard + SILENT_S - self.now)
         lease = Lease(self.holder, self.epoch, left, self.sequence, tuple(self.asked))
         assert machine.lease(self.now) == lease
+        assert not any(proof in repr(vars(machine)) for proof in self.known())
 
     @invariant()
     def is_sound(self) -> None:

@@ -373,14 +373,10 @@ export interface paths {
         put?: never;
         /**
          * Lease
-         * @description Take, request, grant or renew the lease.
+         * @description Take, request, grant, renew or release the lease. Who has its secret holds it.
          */
         post: operations["lease_api_v1_rigs__rig__lease_post"];
-        /**
-         * Release Lease
-         * @description Give the lease up.
-         */
-        delete: operations["release_lease_api_v1_rigs__rig__lease_delete"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -1211,8 +1207,34 @@ export interface components {
             refusal: string | null;
         };
         /**
+         * LeaseGiven
+         * @description The lease after an action. `secret` is the caller's alone: it is told here once, and nowhere else.
+         */
+        LeaseGiven: {
+            /** Epoch */
+            epoch: number;
+            /**
+             * Expires S
+             * @description Until the holder counts as silent: the rig holds, stops, disarms
+             */
+            expires_s: number | null;
+            /** Holder */
+            holder: string | null;
+            /** Requested By */
+            requested_by: string[];
+            /**
+             * Secret
+             * @description With take and takeover: the lease's. With request: the lease's once it is granted to the caller
+             */
+            secret?: string | null;
+            /** Sequence */
+            sequence: number;
+        };
+        /**
          * LeaseIn
-         * @description take: when free or silent; takeover: by force, audited; request: ask the holder; grant: hand over; renew.
+         * @description take: when free or silent; takeover: by force, audited; request: ask the holder. Each answers a secret.
+         *
+         *     Under the lease's secret: renew; grant: hand over to who asked; release: give it up.
          */
         LeaseIn: {
             /**
@@ -1220,7 +1242,12 @@ export interface components {
              * @default take
              * @enum {string}
              */
-            action: "take" | "takeover" | "request" | "grant" | "renew";
+            action: "take" | "takeover" | "request" | "grant" | "renew" | "release";
+            /**
+             * Secret
+             * @description The lease's; with renew, grant and release
+             */
+            secret?: string | null;
             /**
              * To
              * @description With grant: who of those who asked; null: the first
@@ -1248,11 +1275,13 @@ export interface components {
         };
         /**
          * LeaseToken
-         * @description Proof of holding the lease: its epoch, and a sequence that grows with every command.
+         * @description Proof of holding the lease: its secret, its epoch, and a sequence that grows with every command.
          */
         LeaseToken: {
             /** Epoch */
             epoch: number;
+            /** Secret */
+            secret: string;
             /** Sequence */
             sequence: number;
         };
@@ -4826,7 +4855,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["LeaseOut"];
+                    "application/json": components["schemas"]["LeaseGiven"];
                 };
             };
             /** @description The body is not what its type says */
@@ -4876,94 +4905,6 @@ export interface operations {
             };
             /** @description Larger than a bound of this server */
             413: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Validation Error */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The rig process does not answer */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description No room on the disk */
-            507: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Any error, as a problem document */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    release_lease_api_v1_rigs__rig__lease_delete: {
-        parameters: {
-            query?: never;
-            header?: {
-                /** @description Who commands, while no users are configured: a name for the lease and the audit */
-                "x-fullpose-client"?: string | null;
-            };
-            path: {
-                rig: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["LeaseOut"];
-                };
-            };
-            /** @description A foreign page, or a foreign name of this server */
-            403: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description No such thing */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The session refuses; nothing has changed. Names state, command and what is allowed */
-            409: {
                 headers: {
                     [name: string]: unknown;
                 };

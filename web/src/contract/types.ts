@@ -21,6 +21,7 @@ export type FrameLimits = Omit<Schemas["FrameOut"], "weight">;
 export type FrameName = keyof Schemas["FramesOut"];
 export type Health = Schemas["HealthOut"];
 export type Lease = Schemas["LeaseOut"];
+export type LeaseGiven = Schemas["LeaseGiven"];
 export type LeaseAction = Schemas["LeaseIn"]["action"];
 export type LeaseToken = Schemas["LeaseToken"];
 export type LimitName = Schemas["BlockingOut"]["limit"];

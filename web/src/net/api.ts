@@ -50,9 +50,9 @@ export const api = {
     const body = { command, args, lease } as CommandBody;
     return request("post", "/api/v1/rigs/{rig}/commands", { rig }, { ...COMMAND, body });
   },
-  lease: (rig: string, action: LeaseAction) =>
-    request("post", "/api/v1/rigs/{rig}/lease", { rig }, { ...COMMAND, body: { action } }),
-  releaseLease: (rig: string) => request("delete", "/api/v1/rigs/{rig}/lease", { rig }, COMMAND),
+  /** `secret`: the lease's, for what only its holder may do. */
+  lease: (rig: string, action: LeaseAction, secret?: string) =>
+    request("post", "/api/v1/rigs/{rig}/lease", { rig }, { ...COMMAND, body: { action, secret: secret ?? null } }),
   stop: (rig: string) => request("post", "/api/v1/rigs/{rig}/stop", { rig }, STOP),
   estop: (rig: string) => request("post", "/api/v1/rigs/{rig}/estop", { rig }, STOP),
 

@@ -17,14 +17,15 @@ export class TestConsole {
   #listener: Listener | null = null;
   #roundTrip: (ms: number | null) => void = () => undefined;
 
-  /** `answers`: what the server says to a request, a value or an error; to the others it never answers. */
+  /** `answers`: what the server says to a request: a value, an error, or either by what a rig is asked. */
   constructor(answers: { [Request in keyof Api]?: unknown } = {}) {
     const server = new Proxy(api, {
       get: (real, request: keyof Api) => {
         if (request.endsWith("Url")) return real[request];
         return (...given: unknown[]) => {
           this.asked.push([request, ...given]);
-          const answer = answers[request];
+          const said = answers[request];
+          const answer: unknown = typeof said === "function" ? (said as (asked: unknown) => unknown)(given[1]) : said;
           if (answer instanceof Error) return Promise.reject(answer);
           return request in answers ? Promise.resolve(answer) : new Promise(() => undefined);
         };

@@ -1,10 +1,13 @@
 /** Messages as the server sends them, for tests: whole, and ordinary in all that a test does not say. */
-import type { Alarm, Lease, Rig, Snapshot, Trajectory } from "../contract/types";
+import type { Alarm, Lease, LeaseGiven, Rig, Snapshot, Trajectory } from "../contract/types";
 import { me } from "../net/identity";
 
 export function leaseOf(holder: string | null, given: Partial<Lease> = {}): Lease {
   return { holder, epoch: 3, sequence: 0, expires_s: 10, requested_by: [], ...given };
 }
+
+/** What who takes it, or asks for it, is told. */
+export const givenLease = (lease: Lease, secret = "a-secret"): LeaseGiven => ({ ...lease, secret });
 
 /** Ours. */
 export const ourLease = (given: Partial<Lease> = {}): Lease => leaseOf(me(), given);

@@ -31,7 +31,6 @@ from fullpose_server.api.streams.tasks import GoneError, close_for, send_bytes, 
 from fullpose_server.runtime.live.packets import Kind, LiveReply, LiveStatus, encode_sample
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
-from fullpose_server.session.lease import LeaseToken
 
 GONE = 4503
 router = APIRouter(tags=["live"])
@@ -145,10 +144,10 @@ class _Source:
     async def _open(self, message: OpenLive) -> None:
         if message.lease is not None:
             settings = message.model_dump(include={"method", "options", "first_sample_s"})
-            token = LeaseToken(message.lease.epoch, message.lease.sequence)
             args = await with_rig_file(self._services, self._host.name, {"live": settings})
-            reply = await self._host.command("load", args, self._who, token)
-            audit(self._services, self._host.name, self._who, "load", {"live": settings}, message.lease, reply)
+            reply = await self._host.command("load", args, self._who, message.lease.shown())
+            numbers = message.lease.epoch, message.lease.sequence
+            audit(self._services, self._host.name, self._who, "load", {"live": settings}, numbers, reply)
             answer("load", reply)  # raises the refusal
         self._convention = message.convention
         snapshot = self._host.snapshot()

@@ -11,6 +11,7 @@ from pydantic import TypeAdapter
 
 from fullpose.registry import DEFAULT, REGISTRY, method_options, option_defaults
 from fullpose.rig import FRAMES
+from fullpose_server.api.commanding import plan_refusal
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
@@ -153,7 +154,7 @@ async def remove_plan(plan: str, services: ServicesDep) -> None:
 def _out(services: Services, row: PlanRow, name: str | None = None) -> PlanOut:
     name = services.trajectories.get(row.trajectory).name if name is None else name
     result: dict[str, Any] = row.result or {}
-    refusal = result.get("refusal")
+    refusal = plan_refusal(result)
     return PlanOut.model_validate(
         {
             "id": row.id,

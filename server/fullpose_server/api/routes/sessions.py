@@ -1,21 +1,21 @@
 """Sessions: the snapshot, commands, the lease, stop and E-stop on the priority channel, alarms."""
 
 import asyncio
+import secrets
 from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Response
 
-from fullpose_server.api.commanding import audit, by_priority, with_rig_file, without_process
+from fullpose_server.api.commanding import audit, by_priority, plan_refusal, with_rig_file, without_process
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.session import (
     AlarmOut,
     CommandIn,
     CommandOut,
+    LeaseGiven,
     LeaseIn,
-    LeaseOut,
-    LeaseToken,
     LoadArgs,
     SessionOut,
 )
@@ -24,8 +24,7 @@ from fullpose_server.api.stopping import answer, refusal, status_of
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.runtime.supervisor.errors import HostError, RefusedError, RequestTooLargeError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
-from fullpose_server.session.lease import LEASE_NEEDED
-from fullpose_server.session.lease import LeaseToken as Token
+from fullpose_server.session.lease import GIVES_SECRET, LEASE_NEEDED, LeaseAction, proof_of
 from fullpose_server.session.states import NEEDS_NO_LEASE, Command
 
 router = APIRouter(prefix="/rigs/{rig}", tags=["session"])
@@ -34,6 +33,7 @@ REFUSED: dict[int | str, dict[str, Any]] = {
     409: {"description": "The session refuses; nothing has changed. Names state, command and what is allowed"},
     503: {"description": "The rig process does not answer"},
 }
+SECRET_BYTES = 32
 STOPPED = REFUSED | {
     202: {
         "model": CommandOut,
@@ -71,12 +71,11 @@ async def command(
         args = await _load_args(services, rig, body.args)
     if body.command in (Command.LOAD, Command.ARM):
         args = await with_rig_file(services, rig, args)
-    token = None if body.lease is None else Token(body.lease.epoch, body.lease.sequence)
     try:
-        reply = await host.command(body.command, args, who, token)
+        reply = await host.command(body.command, args, who, None if body.lease is None else body.lease.shown())
     except RequestTooLargeError as error:
         raise ApiError(413, "too-large", str(error), command=body.command) from None
-    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), _numbers(body), reply)
     return answer(body.command, reply)
 
 
@@ -96,16 +95,10 @@ async def estop(rig: str, services: ServicesDep, who: WhoStopsDep, response: Res
 
 
 @router.post("/lease", responses=REFUSED)
-async def lease(rig: str, services: ServicesDep, who: WhoDep, body: LeaseIn | None = None) -> LeaseOut:
-    """Take, request, grant or renew the lease."""
+async def lease(rig: str, services: ServicesDep, who: WhoDep, body: LeaseIn | None = None) -> LeaseGiven:
+    """Take, request, grant, renew or release the lease. Who has its secret holds it."""
     body = body or LeaseIn()
-    return await _lease(services, await _host(services, rig), body.action, who, body.to)
-
-
-@router.delete("/lease", responses=REFUSED)
-async def release_lease(rig: str, services: ServicesDep, who: WhoDep) -> LeaseOut:
-    """Give the lease up."""
-    return await _lease(services, await _host(services, rig), "release", who, None)
+    return await _lease(services, await _host(services, rig), who, body)
 
 
 async def _by_priority(services: Services, rig: str, command: Command, who: str, response: Response) -> CommandOut:
@@ -116,18 +109,24 @@ async def _by_priority(services: Services, rig: str, command: Command, who: str,
     return done
 
 
-async def _lease(services: Services, host: RigHost, action: str, who: str, to: str | None) -> LeaseOut:
-    before = host.snapshot().state
+async def _lease(services: Services, host: RigHost, who: str, body: LeaseIn) -> LeaseGiven:
+    before, action = host.snapshot().state, LeaseAction(body.action)
+    given = secrets.token_urlsafe(SECRET_BYTES) if action in GIVES_SECRET else None
+    args = {} if body.to is None else {"to": body.to}
     try:
-        held = await host.lease(action, who, to)
+        held = await host.lease(action, who, proof_of(given or body.secret or ""), body.to)
     except RefusedError as refused:
         audit(services, host.name, who, f"lease {action}", {}, None, refused.reply)
         raise refusal(refused.reply) from None
-    if action != "renew":  # every few seconds; it says nothing that the next command does not
+    if action is not LeaseAction.RENEW:  # every few seconds; it says nothing that the next command does not
         reply = Reply(ok=True, state_before=before, state_after=host.snapshot().state, revision=host.revision)
-        token = LeaseToken(epoch=held.epoch, sequence=held.sequence)
-        audit(services, host.name, who, f"lease {action}", {} if to is None else {"to": to}, token, reply)
-    return lease_out(held)
+        audit(services, host.name, who, f"lease {action}", args, (held.epoch, held.sequence), reply)
+    return LeaseGiven(**lease_out(held).model_dump(), secret=given)
+
+
+def _numbers(body: CommandIn) -> tuple[int, int] | None:
+    """What the audit keeps of the lease that a command shows."""
+    return None if body.lease is None else (body.lease.epoch, body.lease.sequence)
 
 
 async def _refused_without_process(services: Services, rig: str, body: CommandIn, who: str) -> ApiError:
@@ -137,7 +136,7 @@ async def _refused_without_process(services: Services, rig: str, body: CommandIn
     if body.command == Command.CONNECT:
         lease_needed = ErrorBody("lease_needed", LEASE_NEEDED, reply.state_before, body.command, [body.command])
         reply = replace(reply, error=lease_needed)
-    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), body.lease, reply)
+    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), _numbers(body), reply)
     return refusal(reply)
 
 
@@ -165,8 +164,8 @@ async def _load_args(services: Services, rig: str, args: LoadArgs) -> dict[str, 
         why = f"plan {plan} is for rig {row.rig}, not {rig}"
     elif row.status != "done":
         why = f"plan {plan} is {row.status}"
-    elif result.get("refusal"):
-        why = f"plan {plan} cannot be flown: {result['refusal']}"
+    elif (refused := plan_refusal(result)) is not None:
+        why = f"plan {plan} cannot be flown: {refused}"
     if why is not None:
         raise ApiError(409, "not-flyable", why, state=services.hosts.state(rig), command="load")
     return {"plan_folder": str(services.plans.folder(plan).resolve()), "plan_hash": result["plan_hash"]}

@@ -23,6 +23,7 @@ class Request:
     lease: LeaseToken | None = None
     action: str = ""
     to: str | None = None
+    proof: str | None = field(default=None, repr=False)  # of the lease's secret, or of the one that the action gives
 
 
 @dataclass(frozen=True)

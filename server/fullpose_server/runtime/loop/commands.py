@@ -19,6 +19,7 @@ from fullpose_server.runtime.motion.point_to_point import PointMove
 from fullpose_server.session.actions import Given as GivenOf
 from fullpose_server.session.alarms import Severity
 from fullpose_server.session.errors import SessionError
+from fullpose_server.session.lease import Lease, LeaseAction
 from fullpose_server.session.states import Command, State
 
 Given: TypeAlias = GivenOf[Load, PointMove]
@@ -61,7 +62,7 @@ class CommandHandler:
             if request.op == "command":
                 self._command(request, now)
             elif request.op == "lease":
-                lease = machine.lease_action(request.action, request.who, now, request.to)
+                lease = self._lease(request, now)
             elif request.op == "exit":
                 self._exit(request.who, now)
             else:
@@ -70,7 +71,7 @@ class CommandHandler:
             allowed = [str(c) for c in machine.allowed()]
             word = request.command or request.action or request.op
             error = messages.ErrorBody(refusal.code, str(refusal), machine.state, word, allowed)
-        if request.op == "command" or request.action != "renew":
+        if request.op == "command" or request.action != LeaseAction.RENEW:
             p.log.add(
                 "command",
                 who=request.who,
@@ -122,6 +123,14 @@ class CommandHandler:
             raise OrderError("not_at_rest", "the rig was moving: E-stop given; ask again when it is at rest")
         self._parts.state.ending = True
 
+    def _lease(self, request: messages.Request, now: float) -> Lease:
+        try:
+            action = LeaseAction(request.action)
+        except ValueError:
+            words = ", ".join(LeaseAction)
+            raise OrderError("bad_request", f"no lease action {request.action!r}: there are {words}") from None
+        return self._parts.machine.lease_action(action, request.who, now, request.proof, request.to)
+
     def _command(self, request: messages.Request, now: float) -> None:
         machine = self._parts.machine
         try:
@@ -133,7 +142,7 @@ class CommandHandler:
             self._at_once(command, request.who, now)
             return
         # Refused before anything is read or reached, and again below with what was read.
-        machine.check(command, request.who, request.lease, now)
+        machine.check(command, request.lease, now)
         given = self._prepare(command, request, now)
         try:
             ordered = machine.command(command, request.who, request.lease, now, given)

@@ -8,7 +8,6 @@ from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.messages import MAX_REQUEST
 from fullpose_server.runtime.contract.rig_paths import RigPaths, control_socket
 from fullpose_server.runtime.supervisor.errors import RequestTooLargeError, RigUnreachableError
-from fullpose_server.session.lease import LeaseToken
 
 
 class ControlLink:
@@ -33,30 +32,19 @@ class ControlLink:
         self.open_for_requests = True
         self._reader = asyncio.create_task(self._read(), name="rig control reader")
 
-    async def request(
-        self,
-        op: str,
-        who: str,
-        *,
-        timeout_s: float,
-        command: str = "",
-        args: dict[str, Any] | None = None,
-        lease: LeaseToken | None = None,
-        action: str = "",
-        to: str | None = None,
-    ) -> messages.Answer:
-        """Send one request and wait for its answer.
+    async def request(self, op: str, who: str, *, timeout_s: float, **rest: Any) -> messages.Answer:
+        """Send one request, `rest` being the fields of it that belong to `op`, and wait for its answer.
 
         Raises `RigUnreachableError`; TypeError on args not JSON and `RequestTooLargeError`, before anything is sent.
         """
         if not self.open_for_requests:
             raise RigUnreachableError("the rig process has closed the connection")
         number = next(self._numbers)
-        packet = messages.encode(messages.Request(number, op, who, command, args or {}, lease, action, to))
+        asked = messages.Request(number, op, who, **rest)
+        packet = messages.encode(asked)
         if len(packet) > MAX_REQUEST:
-            raise RequestTooLargeError(
-                f"{command or action or op}: {len(packet)} bytes, expected at most {MAX_REQUEST}"
-            )
+            word = asked.command or asked.action or op
+            raise RequestTooLargeError(f"{word}: {len(packet)} bytes, expected at most {MAX_REQUEST}")
         waiting: asyncio.Future[messages.Answer] = asyncio.get_running_loop().create_future()
         self._waiting[number] = waiting
         try:

@@ -17,7 +17,7 @@ from fullpose_server.runtime.supervisor.priority_channel import PriorityChannel
 from fullpose_server.runtime.supervisor.process_manager import REPLY_S, ProcessManager
 from fullpose_server.runtime.supervisor.process_view import ProcessView
 from fullpose_server.runtime.supervisor.running import RunningProcesses
-from fullpose_server.session.lease import Lease, LeaseToken
+from fullpose_server.session.lease import Lease, LeaseAction, LeaseToken
 from fullpose_server.session.states import Command
 
 LOAD_S = 60.0  # a long plan is read and hashed
@@ -75,9 +75,12 @@ class RigHost:
         before = self._view.state()
         return (await self._ask(before, command, "command", who, command=command, args=args, lease=lease)).reply
 
-    async def lease(self, action: str, who: str, to: str | None = None) -> Lease:
-        """take, takeover (by force), release, renew, request, grant. Raises `RefusedError` where it is refused."""
-        answer = await self._ask(self._view.state(), action, "lease", who, action=action, to=to)
+    async def lease(self, action: LeaseAction, who: str, proof: str, to: str | None = None) -> Lease:
+        """Do it under the proof of the lease's secret, or give the secret of `proof` (`GIVES_SECRET`).
+
+        Raises `RefusedError` where it is refused.
+        """
+        answer = await self._ask(self._view.state(), action, "lease", who, action=action, to=to, proof=proof)
         if answer.reply.error is not None or answer.lease is None:
             raise RefusedError(answer.reply)
         return answer.lease

@@ -217,7 +217,7 @@ def test_a_fault_of_a_move_is_kept_though_nothing_flew(tmp_path: Path, kind: str
                 if snapshot.state == "armed":
                     way = 50.0 if snapshot.pose_deg[3] < 0.0 else -50.0
                     await operator.say("move", target_deg=[0.0, 0.0, 0.0, way])
-                await host.lease("renew", operator.who)
+                await operator.renew()
                 return None
 
             snapshot = await answered(moved_on, every_s=0.01)

@@ -5,7 +5,7 @@ import { beforeEach, describe, expect, it } from "vitest";
 import { ApiError } from "../../net/errors";
 import { STALE_MS } from "../../rules/freshness";
 import { TestConsole } from "../../testing/console";
-import { alarm, leaseOf, ourLease, RIG, session } from "../../testing/wire";
+import { alarm, givenLease, leaseOf, ourLease, RIG, session } from "../../testing/wire";
 import AlarmsPanel from "./AlarmsPanel.svelte";
 import CommandBar from "./CommandBar.svelte";
 
@@ -23,7 +23,7 @@ const enabled = (): (string | undefined)[] =>
 
 /** A console that has taken control of a rig whose session is this. */
 async function inControl(given: Parameters<typeof session>[0] = {}, answers: object = {}): Promise<TestConsole> {
-  const console = new TestConsole({ lease: ourLease(), command: {}, ...answers });
+  const console = new TestConsole({ lease: givenLease(ourLease()), command: {}, ...answers });
   console.operate(session({ lease: ourLease(), ...given }));
   await console.stores.operated.lease.take();
   return console;
@@ -60,8 +60,8 @@ describe("the command bar", () => {
     await fireEvent.click(command("start"));
     await fireEvent.click(command("disarm"));
     expect(console.asked.filter(([what]) => what === "command")).toEqual([
-      ["command", "bench", "start", {}, { epoch: 3, sequence: 1 }],
-      ["command", "bench", "disarm", {}, { epoch: 3, sequence: 2 }],
+      ["command", "bench", "start", {}, { epoch: 3, sequence: 1, secret: "a-secret" }],
+      ["command", "bench", "disarm", {}, { epoch: 3, sequence: 2, secret: "a-secret" }],
     ]);
   });
 
