@@ -6,16 +6,19 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 import anyio
+from asgi_correlation_id import CorrelationIdMiddleware
 from fastapi import Depends, FastAPI, Request, Response
+from fastapi.openapi.docs import get_swagger_ui_html
 from starlette.requests import HTTPConnection
 
 from fullpose_server.api import errors, openapi
 from fullpose_server.api import uploads as uploading
 from fullpose_server.api.body_limit import BodyLimit
-from fullpose_server.api.console import console
+from fullpose_server.api.console import API_PAGE, console
 from fullpose_server.api.origin import OriginGuard
 from fullpose_server.api.paths import API
 from fullpose_server.api.problems import ApiError, problem_response
+from fullpose_server.api.request_log import RequestLog, RequestTimes
 from fullpose_server.api.routes import (
     alarms,
     audit,
@@ -72,16 +75,19 @@ def create_app(settings: Settings) -> FastAPI:
         version=VERSION,
         description=DESCRIPTION,
         lifespan=_lifespan(settings),
-        docs_url="/api/docs",
+        docs_url=None,  # FastAPI's page takes its scripts from the network
         redoc_url=None,
         openapi_url=f"{API}/openapi.json",
         separate_input_output_schemas=False,
     )
     app.state.scenes = SceneServer()
+    app.state.requests = RequestTimes()
     errors.install(app)
     app.add_exception_handler(SceneError, _scene_problem)
     for module in ROUTES:
         app.include_router(module.router, prefix=API)
+    app.include_router(health.scraped)
+    app.add_route("/api/docs", _api_page)
     app.include_router(scene_router, dependencies=[Depends(_scene)])
     app.mount("/", console())
     uploads = settings.max_upload_bytes + uploading.ENVELOPE
@@ -89,6 +95,8 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(BodyLimit, settings=settings, larger=larger)
     app.add_middleware(SocketLimit, settings=settings)
     app.add_middleware(OriginGuard, settings=settings)
+    app.add_middleware(RequestLog, times=app.state.requests)
+    app.add_middleware(CorrelationIdMiddleware)
 
     def contract() -> dict[str, Any]:
         if app.openapi_schema is None:
@@ -99,6 +107,18 @@ def create_app(settings: Settings) -> FastAPI:
 
     app.openapi = contract  # type: ignore[method-assign]  # FastAPI's documented way to extend it
     return app
+
+
+async def _api_page(_request: Request) -> Response:
+    """The API for people. The version is in the addresses since browsers may keep them for a year."""
+    script, style = (f"{API_PAGE}{name}?{VERSION}" for name in ("swagger-ui-bundle.js", "swagger-ui.css"))
+    return get_swagger_ui_html(
+        openapi_url=f"{API}/openapi.json",
+        title="Fullpose: the API",
+        swagger_js_url=script,
+        swagger_css_url=style,
+        swagger_favicon_url="/icon.svg",
+    )
 
 
 def _lifespan(settings: Settings) -> Callable[[FastAPI], Any]:

@@ -8,6 +8,8 @@ from typing import Annotated
 from pydantic import Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from fullpose_server.logs import LogFormat, LogLevel, LogSettings
+
 
 def default_data_dir() -> Path:
     """Where data goes unless told otherwise: $XDG_DATA_HOME/fullpose, by default ~/.local/share/fullpose."""
@@ -54,6 +56,8 @@ class Settings(BaseSettings):
     keep_runs_bytes: Positive | None = None  # of all records together: beyond it the oldest go
     keep_alarms_days: float | None = Field(default=None, gt=0.0)  # older alarms leave the history; None: they stay
     keep_alarms: Positive | None = 100_000  # of all rigs together: beyond it the oldest go
+    log_format: LogFormat = LogFormat.TEXT
+    log_level: LogLevel = LogLevel.WARNING
     rig_rate_hz: float = Field(default=1000.0, ge=100.0, le=4000.0)  # as `RigConfig` has it
     live_udp_ports: dict[str, Port] = {}  # rig name to the port where its live source is heard, on loopback
     live_delay_ms: float = Field(
@@ -61,6 +65,11 @@ class Settings(BaseSettings):
     )  # flown that much late: jitter up to it is interpolated
     live_extrapolate_ms: float = Field(default=50.0, gt=0.0, le=2000.0)  # bridged; then the source is lost
     stop_rigs_on_exit: bool = True  # at an orderly end; a server that is killed leaves its rigs to be adopted again
+
+    @property
+    def log(self) -> LogSettings:
+        """How the server's processes log."""
+        return LogSettings(self.log_format, self.log_level)
 
     @property
     def loopback(self) -> bool:

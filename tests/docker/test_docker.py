@@ -189,3 +189,14 @@ def test_warming_runs_every_method(capsys: pytest.CaptureFixture[str], monkeypat
     lines = capsys.readouterr().out.splitlines()
     assert [line.split(":")[0] for line in lines[:-1]] == list(method_names())
     assert lines[-1].startswith("loop and drive in ")
+
+
+def test_the_service_runs_what_is_installed_with_settings_that_there_are() -> None:
+    text = (DOCKER / "fullpose.service").read_text()
+    said = [line.split("=", 1) for line in text.splitlines() if "=" in line and not line.startswith("#")]
+    of = {key: value for key, value in said if key != "Environment"}
+    assert of["ExecStart"].split("/")[-1] == "fullpose serve"
+    assert of["ExecStartPre"].split("/")[-1] == "fullpose config check"
+    assert of["KillMode"] == "process"  # or systemd would end the rigs with a server that died
+    variables = {value.split("=", 1)[0] for key, value in said if key == "Environment"}
+    assert {name for name in variables if name.startswith("FULLPOSE_")} <= FIELDS | {"FULLPOSE_CONFIG"}

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, ViewportSize, expect
 
 from tests.e2e.conftest import TABLET, Pages, Stock
-from tests.e2e.console import SOON_MS
+from tests.e2e.console import SLOW_MS, SOON_MS
 
 pytestmark = pytest.mark.browser
 
@@ -138,3 +138,10 @@ def test_a_reload_keeps_theme_and_address(page: Page, stocked: Stock) -> None:
     assert answer is not None
     assert answer.ok
     expect(page.get_by_text("no rig named my.rig")).to_be_visible(timeout=SOON_MS)
+
+
+def test_the_api_is_shown_without_a_network(page: Page, shots: Path) -> None:
+    page.goto("/api/docs")
+    expect(page.get_by_role("heading", name="Fullpose", exact=False).first).to_be_visible(timeout=SLOW_MS)
+    expect(page.get_by_text("/api/v1/version")).to_be_visible(timeout=SLOW_MS)
+    page.screenshot(path=shots / "api.png")

@@ -8,12 +8,13 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 FOLDER = Path(__file__).resolve().parent.parent / "console"
+API_PAGE = "/assets/api/"  # swagger-ui's files, as `web/vite.config.ts` puts them there
 MISSING = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Fullpose: no console</title>
 <body style="font:16px/1.5 system-ui;max-width:40em;margin:4em auto">
 <h1>The console is not built</h1>
 <p>This server runs from a source tree without its console. Build it with <code>tools/setup</code>, or with
 <code>npm ci &amp;&amp; npm run build</code> in <code>web/</code>.</p>
-<p>The API works: see <a href="/api/docs">/api/docs</a>.</p>
+<p>The API works: see <a href="/api/v1/openapi.json">/api/v1/openapi.json</a>.</p>
 """
 
 

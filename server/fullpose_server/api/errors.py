@@ -2,6 +2,7 @@
 
 import logging
 
+from asgi_correlation_id import correlation_id
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import ValidationError
@@ -39,7 +40,9 @@ def problem_of(error: Exception) -> Problem:
     problem = told(error)
     if problem is None:
         log.error("unexpected error", exc_info=error)
-        return ApiError(500, "internal", "an error of the server; its log tells more").problem
+        request = correlation_id.get()
+        where = f" of request {request}" if request else ""
+        return ApiError(500, "internal", f"an error of the server; its log{where} tells more").problem
     return problem
 
 

@@ -52,7 +52,7 @@ def _prewarm() -> None:
 
 
 async def _run(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
-    gate = GateProcess.spawn(listener)  # it loads while the server does
+    gate = GateProcess.spawn(listener, settings.log)  # it loads while the server does
     app = create_app(settings)
     config = served_by(app, timeout_graceful_shutdown=3, ws_max_size=settings.max_message_bytes)
     keeper: Keeper | None = None

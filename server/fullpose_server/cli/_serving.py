@@ -1,12 +1,11 @@
 """Before the server runs: its log and its socket, and what is wrong with it. Shared by `serve` and `demo`."""
 
 import errno
-import logging
 import socket
-import sys
 from collections.abc import Awaitable, Callable
 
 from fullpose_server.cli._exit import fail
+from fullpose_server.logs import configure
 from fullpose_server.settings import Settings
 
 BACKLOG = 512
@@ -16,7 +15,7 @@ Ready = Callable[[str], Awaitable[None]]
 
 def run(settings: Settings, ready: Ready) -> None:
     """Serve until SIGINT or SIGTERM. The address is the first line of stdout; then `ready` runs beside the server."""
-    logging.basicConfig(format="%(asctime)s %(name)s %(message)s", level=logging.WARNING, stream=sys.stderr)
+    configure(settings.log)
     listener = bind(settings.host, settings.port)
     from fullpose_server.cli._event_loop import serve  # seconds; what can be refused without it has been
 

@@ -13,6 +13,7 @@ from fullpose_server.api.front import FrontStatus
 from fullpose_server.api.problems import MEDIA_TYPE, ApiError
 from fullpose_server.gate import messages
 from fullpose_server.gate.served import Connections
+from fullpose_server.logs import LogSettings
 from fullpose_server.runtime.supervisor.running import RunningProcess, RunningProcesses
 from fullpose_server.store.audit_trail import AuditTrail
 
@@ -29,21 +30,22 @@ class GateProcess:
 
     process: "subprocess.Popen[bytes]"
     link: socket.socket
+    log: LogSettings
 
     @classmethod
-    def spawn(cls, listener: socket.socket) -> "GateProcess":
+    def spawn(cls, listener: socket.socket, log: LogSettings) -> "GateProcess":
         """Start one: it accepts at once, and waits for what it may stop and whom it may hand over to."""
         ours, theirs = messages.link()
         with theirs:
             numbers = [str(listener.fileno()), str(theirs.fileno())]
             command = [sys.executable, "-m", "fullpose_server.gate.process"]
             process = subprocess.Popen(
-                [*command, "--listener", numbers[0], "--link", numbers[1]],
+                [*command, "--listener", numbers[0], "--link", numbers[1], *log.arguments()],
                 pass_fds=(listener.fileno(), theirs.fileno()),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
             )
-        return cls(process, ours)
+        return cls(process, ours, log)
 
     def end(self) -> None:
         """It ends when its link does; one that does not is killed."""
@@ -117,7 +119,7 @@ class Keeper:
                 self._lost(f"it has told nothing for {SILENT_S:g} s")
             if self._status.down_since is not None:
                 await asyncio.to_thread(self._gate.end)
-                self._gate = GateProcess.spawn(self._listener)
+                self._gate = GateProcess.spawn(self._listener, self._gate.log)
                 self._status.down_since = None
                 self._begin()
 

@@ -23,6 +23,7 @@ from fullpose_server.gate.first_request import FirstRequest, StopOf
 from fullpose_server.gate.rigs import Rigs
 from fullpose_server.gate.served import Connections, served_by
 from fullpose_server.gate.system import GATE, before_others, files
+from fullpose_server.logs import LogFormat, LogLevel, LogSettings, configure
 
 ASK_S = 10.0  # so long a connection may take to ask for something
 RESERVE = 64  # descriptors that are kept for stops and for what Python needs
@@ -190,8 +191,10 @@ def main() -> None:
     arguments = argparse.ArgumentParser(description="The stop gate of one server.")
     arguments.add_argument("--listener", type=int, required=True)
     arguments.add_argument("--link", type=int, required=True)
+    arguments.add_argument("--log-format", type=LogFormat, required=True)
+    arguments.add_argument("--log-level", type=LogLevel, required=True)
     given = arguments.parse_args()
-    logging.basicConfig(format="%(asctime)s %(name)s %(message)s", level=logging.WARNING)
+    configure(LogSettings(given.log_format, given.log_level))
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)  # a rig that brakes while the server ends can still be stopped
     before_others(GATE)

@@ -1,17 +1,21 @@
 """Health for people and load balancers, metrics for Prometheus."""
 
 import asyncio
+import platform
 import time
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
 
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.metrics import exposition
-from fullpose_server.api.schemas.records import DiskOut, HealthOut, ServerLimits
+from fullpose_server.api.paths import API
+from fullpose_server.api.schemas.records import DiskOut, HealthOut, ServerLimits, VersionOut
 from fullpose_server.api.session_view import health_out
+from fullpose_server.store.database import HEAD
 from fullpose_server.version import VERSION
 
 router = APIRouter(tags=["health"])
+scraped = APIRouter()  # at the root, where Prometheus looks unless told otherwise
 
 
 @router.get("/health")
@@ -34,10 +38,17 @@ async def health(services: ServicesDep) -> HealthOut:
     )
 
 
+@router.get("/version")
+async def version() -> VersionOut:
+    """What runs here, and what it speaks."""
+    return VersionOut(version=VERSION, api=API, python=platform.python_version(), database_revision=HEAD)
+
+
+@scraped.get("/metrics", include_in_schema=False)
 @router.get("/metrics", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
-async def metrics(services: ServicesDep) -> Response:
+async def metrics(request: Request, services: ServicesDep) -> Response:
     """Prometheus text."""
-    body, media_type = exposition(services)
+    body, media_type = await asyncio.to_thread(exposition, services, request.app.state.requests)
     return Response(body, media_type=media_type)
 
 

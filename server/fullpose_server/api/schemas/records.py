@@ -88,3 +88,12 @@ class HealthOut(Wire):
     disk: DiskOut
     rigs: dict[str, RigHealth]
     warnings: list[str]
+
+
+class VersionOut(Wire):
+    """What runs here."""
+
+    version: str
+    api: str = Field(description="Where the API is")
+    python: str
+    database_revision: str = Field(description="A database of a newer revision is not opened")
