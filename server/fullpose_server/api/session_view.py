@@ -7,6 +7,7 @@ from typing import Any
 from fullpose_server.api.schemas.base import Four
 from fullpose_server.api.schemas.session import (
     AlarmOut,
+    DriveTimes,
     LeaseOut,
     LiveOut,
     PlanRef,
@@ -79,6 +80,7 @@ def health_out(health: Health) -> RigHealth:
         rig_pid=health.rig_pid,
         heartbeat_age_s=health.heartbeat_age_s,
         recorder=RecorderOut(**{key: recorder[key] for key in RecorderOut.model_fields}),
+        drive=DriveTimes(**asdict(health.drive)),
         live=None if health.live is None else LiveOut(**asdict(health.live)),
     )
 

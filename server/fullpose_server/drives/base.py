@@ -1,7 +1,8 @@
 """What a drive is: the one interface between the loop and a table's servo electronics.
 
-The loop calls `read`, then `write`, once a tick, and nothing else while the rig moves; neither may block. Every driver
-must have a watchdog: where writes stop, the table brakes by itself, because nobody else is left to do it.
+The loop calls `read`, then `write`, once a tick, and nothing else while the rig moves; neither may block. One call
+alone comes from another thread: `emergency_brake`, where the loop's own does not return. Every driver must have a
+watchdog: where writes stop, the table brakes by itself, because nobody else is left to do it.
 Units are radians and seconds; arrays are (4,), base first; a frame the rig has not is zero.
 """
 
@@ -58,6 +59,14 @@ class Drive(Protocol):
 
     def brake(self) -> None:
         """Brake at once, by the drive's own means, whatever is written; left by `enable`."""
+        ...
+
+    def emergency_brake(self) -> None:
+        """`brake`, from another thread, while a call of the loop's thread does not return, whichever it is.
+
+        It waits for nothing that such a call may hold: no lock, no queue, no answer. The table brakes on, whatever the
+        hung call does when it comes to itself; left by `enable`.
+        """
         ...
 
     def disable(self) -> None:

@@ -172,6 +172,10 @@ class SimulatedDrive:
         """Brake with all the motors have."""
         self._mode[0] = servo.BRAKING
 
+    def emergency_brake(self) -> None:
+        """The same: one number is written, whoever reads it meanwhile."""
+        self._mode[0] = servo.BRAKING
+
     def disable(self) -> None:
         """Power off; the brakes stop what moves."""
         self._mode[0] = servo.DISABLED

@@ -62,6 +62,7 @@ class UdpDrive:
         self._repeat = False
         self._zero = (0.0,) * 4
         self._stale = False
+        self._emergency = False  # an emergency brake was sent; the next read makes a numbered order of it
 
     def connect(self, now: float) -> None:  # noqa: ARG002  # waits on the real clock
         """Ask the table for a word, until it answers or `connect_s` is over."""
@@ -96,12 +97,16 @@ class UdpDrive:
         if self._socket is None:
             raise DriveError("udp drive: not connected")
         self._epoch = self._sequence = -1
+        self._emergency = False
         self._order(Order.ENABLE)
 
     def read(self, now: float, position: Array, rate: Array) -> int:
         """The newest state datagram; the link is lost where none came for `link_lost_s`."""
         if self._socket is None:
             return int(Status.LINK_LOST)
+        if self._emergency:
+            self._emergency = False
+            self.brake()
         for _ in range(_PER_READ):
             try:
                 packet = decode_state(self._socket.recv(STATE_SIZE + 1))
@@ -148,6 +153,14 @@ class UdpDrive:
         """Have the table brake."""
         self._order(Order.BRAKE)
 
+    def emergency_brake(self) -> None:
+        """One datagram, past whatever the loop's thread does; the next `read`, if there is one, repeats it."""
+        self._emergency = True
+        taken = 0 if self._newest is None else self._newest.number
+        zero = self._zero
+        number = max(self._number, taken) + 1
+        self._send(CommandPacket(Order.BRAKE, number, 0, 0, time.monotonic(), zero, zero, zero))
+
     def disable(self) -> None:
         """Have the table power off."""
         self._order(Order.DISABLE)
@@ -179,10 +192,11 @@ class UdpDrive:
         self._send(CommandPacket(order, self._number, 0, 0, time.monotonic(), zero, zero, zero))
 
     def _send(self, packet: CommandPacket) -> None:
-        if self._socket is None:
+        link = self._socket  # an emergency brake comes from another thread than a `close`
+        if link is None:
             return
         try:
-            self._socket.send(encode_command(packet))
+            link.send(encode_command(packet))
         except OSError:
             return  # refused or full: the missing answers tell, and the table's watchdog acts
 

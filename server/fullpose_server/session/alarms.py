@@ -1,6 +1,7 @@
 """Alarms: severity, latched first-out, acknowledge, history. Pure; told the time [s since the Unix epoch].
 
-The first alarm of a chain is marked `first`: after one cause many alarms follow, and the operator needs the cause.
+The first alarm of a chain is marked `first`: after one cause many alarms follow, and the operator needs the cause. A
+chain ends when its faults have left, or when the link is made anew.
 Warnings leave when acknowledged. Faults stay through a latch, until the session is reset; outside one nothing is to be
 reset, and they leave when acknowledged too (`link_lost`, which leads to disconnected), so that the next is a `first`.
 A warning can be shelved, for a time that ends (IEC 62682): it is in the history, and does not stand. What brakes a rig
@@ -73,6 +74,7 @@ class AlarmBook:
     history: tuple[Alarm, ...] = ()
     last_number: int = 0
     shelves: tuple[Shelf, ...] = ()
+    chained: bool = False  # the chain of faults that is going on has its first
 
     def raised(
         self,
@@ -91,21 +93,23 @@ class AlarmBook:
         """
         if severity is Severity.WARNING and any(shelf.holds(code, frame, time_s) for shelf in self.shelves):
             return self._shelved(Alarm(0, code, severity, message, time_s, frame, value, limit, unit, shelved=True))
+        latching = severity is not Severity.WARNING
+        first = latching and not self.chained
         for index, old in enumerate(self.standing):
             same = (old.code, old.frame, old.severity) == (code, frame, severity)
             if same and old.acknowledged_by is None:
-                again = replace(old, count=old.count + 1, last_time_s=time_s)
+                again = replace(old, count=old.count + 1, last_time_s=time_s, first=old.first or first)
                 return replace(
                     self,
+                    chained=self.chained or latching,
                     standing=(*self.standing[:index], again, *self.standing[index + 1 :]),
                     history=tuple(again if a.number == again.number else a for a in self.history),
                 )
-        latching = severity is not Severity.WARNING
-        first = latching and not any(a.severity is not Severity.WARNING for a in self.standing)
         number = self.last_number + 1
         alarm = Alarm(number, code, severity, message, time_s, frame, value, limit, unit, first)
         standing, history = (*self.standing, alarm), (*self.history, alarm)[-HISTORY:]
-        return replace(self, standing=standing, history=history, last_number=number)
+        chained = self.chained or latching
+        return replace(self, standing=standing, history=history, last_number=number, chained=chained)
 
     def _shelved(self, alarm: Alarm) -> "AlarmBook":
         key = (alarm.code, alarm.frame)
@@ -158,7 +162,13 @@ class AlarmBook:
 
     def cleared(self) -> "AlarmBook":
         """The book after a reset, or where there is nothing to reset: what was acknowledged no longer stands."""
-        return replace(self, standing=tuple(a for a in self.standing if a.acknowledged_by is None))
+        standing = tuple(a for a in self.standing if a.acknowledged_by is None)
+        chained = self.chained and any(a.severity is not Severity.WARNING for a in standing)
+        return replace(self, standing=standing, chained=chained)
+
+    def first_awaited(self) -> "AlarmBook":
+        """The book for which the next fault is a first, whatever stands of before."""
+        return replace(self, chained=False)
 
     @property
     def unacknowledged(self) -> tuple[Alarm, ...]:

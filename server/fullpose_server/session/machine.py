@@ -95,6 +95,9 @@ class SessionMachine(Generic[L, M]):
             wanted = "a live source" if command is Command.GO_LIVE else "a plan"
             if self.binding.live != (command is Command.GO_LIVE):
                 raise NotReadyError("wrong_load", f"{command} needs {wanted} loaded: disarm, unload and load it")
+        if command is Command.ARM and self.alarms.unacknowledged:
+            codes = ", ".join(a.code for a in self.alarms.unacknowledged)
+            raise NotReadyError("standing_fault", f"a fault stands that nobody has acknowledged: {codes}")
         if command is Command.RESET:
             if self.moving:
                 raise NotReadyError("not_at_rest", "the rig is still braking: reset when it is at rest")
@@ -137,6 +140,7 @@ class SessionMachine(Generic[L, M]):
             self.binding = given.binding
         if command is Command.CONNECT:
             self.linked = True
+            self.alarms = self.alarms.first_awaited()  # what a link made anew meets follows from nothing of before
         if command is Command.START:
             self._flight = True
         if command in (Command.MOVE, Command.HOME, Command.JOG):

@@ -41,6 +41,7 @@ class LeaseModel(RuleBasedStateMachine):
         self.secrets = 0
         self.commander = ""  # who gave the newest command
         self.standing: list[Alarm] = []
+        self.chained = False  # the chain of faults has its first
         self.shelves: dict[str, float] = {}  # until when [s], by the code
         self.past: dict[int, Alarm] = {}
 

@@ -10,6 +10,15 @@ def test_the_first_fault_of_a_chain_is_marked_and_warnings_are_not() -> None:
     assert [(a.code, a.first) for a in book.standing] == [("slow", False), ("cause", True), ("effect", False)]
 
 
+def test_a_chain_after_the_link_was_made_anew_has_a_first_of_its_own() -> None:
+    lost = AlarmBook().raised("link_lost", Severity.FAULT, "", 0.0)
+    book = lost.first_awaited().raised("drive_failed", Severity.FAULT, "", 1.0).raised("late", Severity.FAULT, "", 2.0)
+    assert [(a.code, a.first) for a in book.standing] == [("link_lost", True), ("drive_failed", True), ("late", False)]
+    again = AlarmBook().raised("a", Severity.FAULT, "", 0.0).raised("b", Severity.FAULT, "", 0.0)
+    again = again.first_awaited().raised("b", Severity.FAULT, "", 1.0).raised("a", Severity.FAULT, "", 1.0)
+    assert [(a.code, a.count, a.first) for a in again.standing] == [("a", 2, True), ("b", 2, True)]
+
+
 def test_the_same_again_only_counts() -> None:
     book = AlarmBook().raised("a", Severity.FAULT, "", 0.0, frame="base").raised("a", Severity.FAULT, "", 1.0, "base")
     assert [(a.count, a.time_s, a.last_time_s) for a in book.standing] == [(2, 0.0, 1.0)]

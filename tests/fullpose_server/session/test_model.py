@@ -88,6 +88,8 @@ class Model(LeaseModel):
         unseen = any(a.severity is not Severity.WARNING and a.acknowledged_by is None for a in self.standing)
         if (command is C.START and live) or (command is C.GO_LIVE and not live):
             return NotReadyError, "wrong_load"
+        if command is C.ARM and unseen:
+            return NotReadyError, "standing_fault"
         if command is C.RESET and self.moving:
             return NotReadyError, "not_at_rest"
         if command is C.RESET and unseen:
@@ -164,11 +166,13 @@ class Model(LeaseModel):
         if command is C.LOAD:
             self.bound = binding
         self.linked = self.linked or command is C.CONNECT
+        self.chained = self.chained and command is not C.CONNECT
         if command in (C.START, C.MOVE, C.HOME, C.JOG):
             self.flight = command is C.START
         self.go(row, actions)
         if command is C.RESET:
             self.standing = [a for a in self.standing if a.acknowledged_by is None]
+            self.await_first()
 
     @rule(seed=st.integers(0, 2**32 - 1), binding=st.sampled_from([PLAN, LIVE]))
     def walk(self, seed: int, binding: Binding) -> None:
@@ -247,12 +251,14 @@ class Model(LeaseModel):
             assert self.machine.alarm(code, severity, "told", self.now) == expected
             return
         again = [a for a in self.standing if (a.code, a.severity, a.acknowledged_by) == (code, severity, None)]
+        first = severity is not Severity.WARNING and not self.chained
+        self.chained = self.chained or first
         if again:
-            expected = dataclasses.replace(again[0], count=again[0].count + 1, last_time_s=self.now)
+            count, marked = again[0].count + 1, again[0].first or first
+            expected = dataclasses.replace(again[0], count=count, last_time_s=self.now, first=marked)
             self.standing[self.standing.index(again[0])] = expected
             self.past[expected.number] = expected
         else:
-            first = all(a.severity is Severity.WARNING for a in self.standing) and severity is not Severity.WARNING
             expected = Alarm(len(self.past) + 1, code, severity, "told", self.now, first=first)
             self.standing.append(expected)
             self.past[expected.number] = expected
@@ -271,6 +277,12 @@ class Model(LeaseModel):
             if seen.acknowledged_by is None or not leaves:
                 still.append(seen)
         self.standing = still
+        if self.state not in LATCHED:
+            self.await_first()
+
+    def await_first(self) -> None:
+        """A chain of faults ends with the last of them that stands."""
+        self.chained = self.chained and any(a.severity is not Severity.WARNING for a in self.standing)
 
     # --- what must hold ---
 
@@ -296,7 +308,8 @@ class Model(LeaseModel):
         if machine.state in (S.READY, S.ARMED, *MOVING):
             assert machine.binding is not None
             assert machine.binding.rig_hash == machine.rig_hash
-        assert sum(alarm.first for alarm in machine.alarms.standing) <= 1
+        faults = [alarm for alarm in machine.alarms.standing if alarm.severity is not Severity.WARNING]
+        assert not faults or any(alarm.first for alarm in faults)  # a chain without its cause tells nothing
 
 
 TestModel = Model.TestCase

@@ -984,6 +984,25 @@ export interface components {
             /** Free Bytes */
             free_bytes: number;
         };
+        /**
+         * DriveTimes
+         * @description How long the drive's calls take: smoothed, and the longest since its process began.
+         */
+        DriveTimes: {
+            /**
+             * Hangs
+             * @description The call that has not returned, while the loop does not respond
+             */
+            hangs: string | null;
+            /** Read Max Us */
+            read_max_us: number;
+            /** Read Us */
+            read_us: number;
+            /** Write Max Us */
+            write_max_us: number;
+            /** Write Us */
+            write_us: number;
+        };
         /** Estop */
         Estop: {
             /** @default {} */
@@ -2324,6 +2343,7 @@ export interface components {
             busy_us: number;
             /** Deadline Misses */
             deadline_misses: number;
+            drive?: components["schemas"]["DriveTimes"] | null;
             /** Heartbeat Age S */
             heartbeat_age_s: number | null;
             /** Lateness Us */
@@ -2394,6 +2414,12 @@ export interface components {
             type: "stopped";
         };
         /**
+         * RunEnd
+         * @description The words.
+         * @enum {string}
+         */
+        RunEnd: "completed" | "stopped" | "source_lost" | "owner_silent" | "server_silent" | "estop" | "fault" | "link_lost" | "process_lost";
+        /**
          * RunnerStatus
          * @description What a runner does.
          * @enum {string}
@@ -2413,6 +2439,13 @@ export interface components {
             complete: boolean;
             /** Duration S */
             duration_s: number | null;
+            /** @description How it ended; null: not known (a record that was cut off, or of an earlier version), or not yet */
+            end: components["schemas"]["RunEnd"] | null;
+            /**
+             * End Code
+             * @description Of the alarm that ended it, where one did
+             */
+            end_code: string | null;
             /** Ended At */
             ended_at: string | null;
             /**
@@ -2999,6 +3032,8 @@ export interface components {
             path_scale: (number | null)[];
             /** Path Time S */
             path_time_s: (number | null)[];
+            /** Read Us */
+            read_us: (number | null)[];
             /** Revision */
             revision: number[];
             /** Sample Seq */
@@ -3026,6 +3061,8 @@ export interface components {
             type: "telemetry";
             /** Wall Ns */
             wall_ns: number[];
+            /** Write Us */
+            write_us: (number | null)[];
         };
         /**
          * TrajectoryIn

@@ -17,12 +17,14 @@ from fullpose_server.api.schemas.records import RunOut
 from fullpose_server.runtime.recording.export import write_export
 from fullpose_server.runtime.recording.mcap_reader import is_complete
 from fullpose_server.runtime.recording.run_index import RunInUseError, RunSummary
+from fullpose_server.session.run_end import RunEnd
 from fullpose_server.store.keyset import Key
 
 router = APIRouter(prefix="/runs", tags=["runs"])
 _LIST = TypeAdapter(list[RunOut])
 Format = Literal["csv", "parquet", "mcap"]
 _IN_USE: dict[int | str, dict[str, Any]] = {409: {"description": "It is pinned, or being written"}}
+_ENDS = {str(end): end for end in RunEnd}
 MEDIA_TYPES = {"csv": "text/csv", "parquet": "application/vnd.apache.parquet", "mcap": "application/octet-stream"}
 
 
@@ -93,6 +95,8 @@ def _out(services: Services, run: RunSummary) -> RunOut:
         pinned=services.runs.pinned(run.id),
         id=run.id,
         rig=run.rig,
+        end=_ENDS.get(run.end or ""),
+        end_code=run.end_code,
         incident=run.incident,
         error=run.error,
         plan_id=run.plan_id,

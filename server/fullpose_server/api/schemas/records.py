@@ -8,6 +8,7 @@ from pydantic import Field
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.session import AlarmOut, RigHealth
 from fullpose_server.planning.runner import RunnerStatus
+from fullpose_server.session.run_end import RunEnd
 from fullpose_server.session.states import State
 
 
@@ -16,6 +17,10 @@ class RunOut(Wire):
 
     id: str
     rig: str
+    end: RunEnd | None = Field(
+        description="How it ended; null: not known (a record that was cut off, or of an earlier version), or not yet"
+    )
+    end_code: str | None = Field(description="Of the alarm that ended it, where one did")
     incident: str | None = Field(
         description="Null: a run. Else no flight: what was kept around a fault while no run was recorded, and the code"
         " of its alarm"

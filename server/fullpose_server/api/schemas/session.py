@@ -245,6 +245,16 @@ class RecorderOut(Wire):
     error: str
 
 
+class DriveTimes(Wire):
+    """How long the drive's calls take: smoothed, and the longest since its process began."""
+
+    read_us: float
+    read_max_us: float
+    write_us: float
+    write_max_us: float
+    hangs: str | None = Field(description="The call that has not returned, while the loop does not respond")
+
+
 class LiveOut(Wire):
     """The live source that is loaded."""
 
@@ -272,6 +282,7 @@ class RigHealth(Wire):
     rig_pid: int | None
     heartbeat_age_s: float | None
     recorder: RecorderOut | None
+    drive: DriveTimes | None = None
     live: LiveOut | None = None
 
 

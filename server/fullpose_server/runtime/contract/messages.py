@@ -120,6 +120,17 @@ class RecorderHealth:
 
 
 @dataclass(frozen=True)
+class DriveHealth:
+    """How long the drive's calls take [us]: smoothed, and the longest of the process's life."""
+
+    read_us: float
+    read_max_us: float
+    write_us: float
+    write_max_us: float
+    hangs: str | None  # the call that has not returned, while the loop does not respond
+
+
+@dataclass(frozen=True)
 class Health:
     """How the rig process is doing. Lateness [us] over its whole life."""
 
@@ -133,6 +144,7 @@ class Health:
     rig_pid: int
     heartbeat_age_s: float
     recorder: RecorderHealth
+    drive: DriveHealth
     live: LiveHealth | None = None
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from fullpose_server.runtime.contract.memory_order import acquire, release
 from fullpose_server.runtime.contract.telemetry import SAMPLE, Ring, Samples
 
-MAGIC = 0x46504C5053523032
+MAGIC = 0x46504C5053523033
 SAMPLES = 32768
 EVENTS = 1024
 EVENT_BYTES = 2032
@@ -40,6 +40,12 @@ HEADER = np.dtype(
         ("misses", "<u8"),
         ("max_lateness_ns", "<i8"),
         ("busy_ns", "<i8"),  # smoothed work of a tick
+        ("drive_call", "<i8"),  # a `DriveCall`: the one that the loop is in
+        ("drive_call_ns", "<i8"),  # since when
+        ("read_ns", "<i8"),  # smoothed time in the drive's `read`, and the longest
+        ("read_max_ns", "<i8"),
+        ("write_ns", "<i8"),
+        ("write_max_ns", "<i8"),
         ("estop_done_ns", "<i8"),  # the request that was handled last
         ("estop_wrote_ns", "<i8"),  # when its first braking command was written
         ("stop_done_ns", "<i8"),

@@ -67,6 +67,8 @@ FIELDS = (
     TelemetryField("margin"),  # the smallest relative distance of any frame to any of its limits, 0..1
     TelemetryField("lateness_us"),  # of the tick
     TelemetryField("tick", "<u8"),
+    TelemetryField("read_us"),  # of the tick, in the drive's `read`
+    TelemetryField("write_us"),  # in its `write`; nan where nothing was written
 )
 SAMPLE = np.dtype([(f.name, f.type, len(f.parts)) if f.parts else (f.name, f.type) for f in FIELDS], align=True)
 

@@ -20,6 +20,7 @@ from fullpose_server.session.actions import Given as GivenOf
 from fullpose_server.session.alarms import Severity
 from fullpose_server.session.errors import SessionError
 from fullpose_server.session.lease import Lease, LeaseAction
+from fullpose_server.session.run_end import Ending, RunEnd
 from fullpose_server.session.states import Command, State
 
 Given: TypeAlias = GivenOf[Load, PointMove]
@@ -99,6 +100,7 @@ class CommandHandler:
 
     def _at_once(self, command: Command, who: str, now: float) -> None:
         ordered = self._parts.machine.command(command, who, None, now)
+        self._executor.ends(Ending(RunEnd.ESTOP, "estop") if command is Command.ESTOP else Ending(RunEnd.STOPPED))
         if command is Command.ESTOP:
             self._executor.alarm("estop", Severity.EMERGENCY, f"E-stop by {who or 'an unnamed operator'}")
         self._executor.do(ordered)

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TypeAlias
 
 from fullpose._typing import Array
-from fullpose_server.drives.base import Drive
 from fullpose_server.formats.plan_folder import PlanInfo
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.shared_memory import Shared
@@ -14,10 +13,12 @@ from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.loop.clock import Clock
 from fullpose_server.runtime.loop.event_log import EventLog
 from fullpose_server.runtime.loop.orders import Load
+from fullpose_server.runtime.loop.watched_drive import WatchedDrive
 from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.limit_guard import Guard
 from fullpose_server.runtime.motion.point_to_point import PointMove
 from fullpose_server.session.machine import SessionMachine
+from fullpose_server.session.run_end import Ending
 
 Session: TypeAlias = SessionMachine[Load, PointMove]
 
@@ -34,6 +35,8 @@ class LoopState:
     drive_brakes_since: float = 0.0  # [s, monotonic]
     disable_at_rest: bool = False
     run_id: str | None = None  # of the flight that is recorded
+    run_ending: Ending | None = None  # why it ends, where that is known
+    run_ends: bool = False  # it ends with this tick's sample
     plan: PlanInfo | None = None  # the one that was loaded last; None for a live source
     plan_folder: Path | None = None  # where it is
     ticks: int = 0
@@ -53,7 +56,7 @@ class Parts:
     config: RigConfig
     clock: Clock
     machine: Session
-    drive: Drive
+    drive: WatchedDrive
     motion: Motion
     guard: Guard
     live: LiveSource

@@ -6,6 +6,7 @@ what they found, the executor does what follows. Nothing blocks but what the ses
 
 import numpy as np
 
+from fullpose_server.runtime.loop.caretaker import Caretaker
 from fullpose_server.runtime.loop.clock import Deadlines, seconds
 from fullpose_server.runtime.loop.commands import CommandHandler, Serve
 from fullpose_server.runtime.loop.context import Parts
@@ -18,6 +19,7 @@ from fullpose_server.runtime.loop.supervision import Supervision
 from fullpose_server.runtime.motion.generator import Mode
 from fullpose_server.runtime.motion.limit_guard import Finding
 from fullpose_server.session.alarms import Severity
+from fullpose_server.session.run_end import Ending, RunEnd
 from fullpose_server.session.states import Event
 
 
@@ -34,6 +36,7 @@ class ControlLoop:
         self._commands = CommandHandler(parts, self._executor, self._publisher, self._deadlines)
         self._requests = serve(self._commands.answer)
         self._priority = PriorityChannel(parts.shared.header, parts.clock)
+        self.caretaker = Caretaker(parts, self._executor, self._publisher, self._commands, self._priority)
         self._leisure = leisure
         self._sequence = 0
         parts.shared.header["period_ns"] = self._deadlines.period_ns
@@ -50,6 +53,9 @@ class ControlLoop:
             # A fault of ours: nothing is commanded any more, so the drive brakes by itself; the last words say why.
             self._p.drive.brake()
             self._executor.alarm("internal_error", Severity.FAULT, f"{type(cause).__name__}: {cause}")
+            self._executor.ends(Ending(RunEnd.FAULT, "internal_error"))
+            self._publisher.record(self._p.clock.monotonic_ns(), 0, 0)  # the tick that failed
+            self._executor.end_run()
             self._publisher.publish()
             raise
         self._requests.close()
@@ -144,6 +150,8 @@ class ControlLoop:
             self._publisher.publish()  # who reads "done" must find the state it led to
             self._priority.done()
         solved_deg = self._publisher.record(now_ns, lateness_ns, missed)
+        if p.state.run_ends:
+            self._executor.end_run()
         p.live.reply(p.motion.x, solved_deg, p.guard.margin, seconds(p.clock))
         self._p.state.ticks += 1
         self._publisher.count(lateness_ns, missed)

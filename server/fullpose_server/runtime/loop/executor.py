@@ -23,6 +23,7 @@ from fullpose_server.runtime.motion.limit_guard import Finding
 from fullpose_server.runtime.motion.point_to_point import PointMove
 from fullpose_server.session import actions
 from fullpose_server.session.alarms import Severity
+from fullpose_server.session.run_end import Ending, RunEnd
 from fullpose_server.session.states import IN_MOTION, Event, State
 
 Order: TypeAlias = actions.Order[Load, PointMove]
@@ -45,6 +46,8 @@ class Executor:
         self.do(machine.event(event))
         if machine.state is not before:
             self._parts.log.add("transition", before=before, after=machine.state, trigger=str(event))
+        if event is Event.SOURCE_LOST and machine.state is not before:
+            self.ends(Ending(RunEnd.SOURCE_LOST, "live_source_lost"))
         if event is Event.AT_REST:
             self.rest()
 
@@ -58,8 +61,7 @@ class Executor:
         if p.machine.state is not State.LIVE:
             p.live.end()
         if state.run_id is not None and p.machine.state not in IN_MOTION and not p.machine.moving:
-            p.log.add("run_end", run_id=state.run_id, head=p.shared.ring.head, state=p.machine.state)
-            state.run_id = None
+            state.run_ends = True
 
     def _do(self, order: Order) -> None:
         p = self._parts
@@ -118,7 +120,7 @@ class Executor:
             self.apply([said("drive_refused", str(cause), Event.FAULT)])
             return
         self._hold_position(p.state.measured)
-        p.state.enabled = True
+        p.state.enabled, p.state.drive_brakes = True, False
 
     def _brake_fastest(self) -> None:
         if self._parts.state.commanded and self._parts.machine.moving:
@@ -172,6 +174,8 @@ class Executor:
             elif each.drive_brakes:
                 self.let_drive_brake()
             self._raise(found, Severity.FAULT)
+            how = RunEnd.LINK_LOST if each.event is Event.LINK_LOST else RunEnd.FAULT
+            self.ends(Ending(how, found.code))
             self.report(each.event)
             if each.event is Event.LINK_LOST:
                 p.drive.close()
@@ -182,6 +186,8 @@ class Executor:
         before = machine.state
         self.report(event)
         if machine.state is not before:
+            if machine.state is State.STOPPING:
+                self.ends(Ending(RunEnd(code), code))
             self.alarm(code, Severity.WARNING, f"{told}: {before} -> {machine.state}")
 
     def _raise(self, found: Finding, severity: Severity) -> None:
@@ -206,7 +212,24 @@ class Executor:
 
     def _begin_run(self, who: str) -> None:
         """A flight begins: the recorder opens a file."""
-        self._parts.state.run_id = self._open_record("run_begin", self._parts.config.name, who=who)
+        state = self._parts.state
+        state.run_id, state.run_ending = self._open_record("run_begin", self._parts.config.name, who=who), None
+
+    def ends(self, ending: Ending) -> None:
+        """Remember why the flight that is recorded, if there is one, is going to end."""
+        state = self._parts.state
+        if state.run_id is not None:
+            state.run_ending = ending.after(state.run_ending)
+
+    def end_run(self) -> None:
+        """The flight that is recorded is over, with the sample that was published last."""
+        p, state = self._parts, self._parts.state
+        if state.run_id is None:
+            return
+        ending = state.run_ending or Ending(RunEnd.COMPLETED)
+        ended = {"how": ending.how, "code": ending.code, "state": p.machine.state}
+        p.log.add("run_end", run_id=state.run_id, head=p.shared.ring.head, **ended)
+        state.run_id, state.run_ends = None, False
 
     def _open_record(self, kind: str, name: str, **content: Any) -> str:
         p = self._parts

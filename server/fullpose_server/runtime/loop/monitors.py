@@ -13,6 +13,7 @@ from fullpose_server.drives.base import Status
 from fullpose_server.drives.response_monitor import DriveResponseMonitor
 from fullpose_server.runtime.contract.config import RigConfig, Tolerance
 from fullpose_server.runtime.live.source import LiveView
+from fullpose_server.runtime.loop.watched_drive import DriveFailure
 from fullpose_server.runtime.motion.limit_guard import Finding, Guard
 from fullpose_server.session.states import Event
 
@@ -45,12 +46,18 @@ class DriveView(NamedTuple):
     commanded: bool
     moving: bool
     measured: Array  # (4,) [rad]
+    read_ms: float  # how long the read took that told it
 
 
 def said(code: str, message: str, event: Event | None = None, *, drive_brakes: bool = False) -> Violation:
     """A violation without a figure."""
     finding = Finding(code, event is not None, message, None, math.nan, math.nan, "")
     return Violation(finding, event, drive_brakes)
+
+
+def _words(status: int) -> str:
+    """`Status` bits as the drive's author knows them."""
+    return ", ".join(str(bit.name) for bit in Status if bit and status & bit) or "OK"
 
 
 def weighed(found: Finding | None, *, drive_brakes: bool = False) -> list[Violation]:
@@ -95,32 +102,43 @@ class Monitors:
         status = seen.status
         disobeys = self._response.ends(seen.commanded, seen.moving, status)
         if status & _LINK_LOST:
-            text = f"drive {seen.name}: link lost; the drive brakes by itself"
+            text = f"drive {seen.name}: read, {seen.read_ms:.3g} ms: link lost; the drive brakes by itself"
             return [said("link_lost", text, Event.LINK_LOST)]
         if seen.commanded and status & _BROKEN:
             return [self._drive_fault(seen)]
         if disobeys and seen.commanded:
-            why = "the order to enable was not confirmed" if status & Status.UNCONFIRMED else "it took the order"
-            text = f"drive {seen.name} does not follow commands: {why}"
+            why = (
+                "the order to enable was not confirmed"
+                if status & Status.UNCONFIRMED
+                else "it was enabled and confirmed it, and says no more that it is"
+            )
+            text = f"drive {seen.name} does not follow commands: {why} (read reports {_words(status)})"
             return [said("drive_not_enabled", text, Event.FAULT, drive_brakes=True)]
         if disobeys:
             why = "it still follows commands" if status & Status.ENABLED else "the order was not confirmed"
-            text = f"drive {seen.name} was told to brake or power off: {why}"
+            text = f"drive {seen.name} was told to brake or power off: {why} (read reports {_words(status)})"
             return [said("drive_not_disabled", text, Event.FAULT)]
         if seen.enabled and status & _STALE_WRITE:
-            return [said("stale_write", "the drive refused an old command")]
+            return [said("stale_write", f"drive {seen.name}: write: refused as an old command")]
         return []
+
+    def failed(self, failure: DriveFailure) -> Violation:
+        """A call of the drive that raised: whatever it was asked is not done."""
+        took_ms = failure.took_ns / 1e6
+        return Violation(Finding("drive_failed", True, failure.cause, None, took_ms, math.nan, "ms"), Event.FAULT, True)
 
     def _drive_fault(self, seen: DriveView) -> Violation:
         status = seen.status
         word = "encoder" if status & Status.ENCODER else "watchdog" if status & Status.WATCHDOG else "fault"
         lost = np.flatnonzero(~np.isfinite(seen.measured))
         frame = FRAMES[int(lost[0])] if len(lost) else None
+        which = "a frame that it does not name" if frame is None else f"the {frame} frame"
         told = {
-            "encoder": f"{frame} frame: no position from its encoder",
+            "encoder": f"no position from the encoder of {which}",
             "watchdog": "no command reached the drive in time: it brakes by itself",
-            "fault": "the drive reports a fault",
+            "fault": "the drive has a fault of its own",
         }[word]
+        told = f"drive {seen.name}: read, {seen.read_ms:.3g} ms, reports {_words(status)}: {told}"
         return Violation(Finding(f"drive_{word}", True, told, frame, math.nan, math.nan, ""), Event.FAULT, True)
 
     def rests(self, rate: Array, braking_s: float) -> bool:

@@ -4,6 +4,7 @@ It is started by the server and outlives it.
 """
 
 import argparse
+import faulthandler
 import logging
 import os
 import signal
@@ -20,6 +21,7 @@ from fullpose_server.drives import registry
 from fullpose_server.drives.base import Drive, DriveError
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.runtime.contract import config
+from fullpose_server.runtime.contract.drive_call import EXIT_HANGS
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.live.links import open_links
@@ -29,8 +31,10 @@ from fullpose_server.runtime.loop.clock import Clock, SystemClock
 from fullpose_server.runtime.loop.context import LoopState, Parts
 from fullpose_server.runtime.loop.control_loop import ControlLoop
 from fullpose_server.runtime.loop.control_server import ControlServer
+from fullpose_server.runtime.loop.drive_watch import DriveWatch
 from fullpose_server.runtime.loop.event_log import EventLog
 from fullpose_server.runtime.loop.leisure import Leisure
+from fullpose_server.runtime.loop.watched_drive import WatchedDrive
 from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.limit_guard import Guard
 from fullpose_server.session.machine import SessionMachine
@@ -66,7 +70,7 @@ def assemble(settings: config.RigConfig, drive: Drive, shared: Shared, live: Liv
         config=settings,
         clock=ticks,
         machine=SessionMachine(rig.name, rig_hash(rig), settings.owner, settings.shelves),
-        drive=drive,
+        drive=WatchedDrive(drive, shared.header, ticks),
         motion=Motion(rig, settings.motion, settings.rate_hz),
         guard=Guard(rig, settings.guard, 1.0 / settings.rate_hz),
         live=live,
@@ -118,6 +122,9 @@ def main() -> int:
         leisure = Leisure(recorder, parts.log, shared.header, settings.exit_idle_s, clock.seconds(ticks))
         loop = ControlLoop(parts, partial(ControlServer, paths), leisure)
         signal.signal(signal.SIGTERM, lambda *_: loop.terminate())
+        ended = partial(_end_at_once, paths, log)
+        stacks = partial(faulthandler.dump_traceback, sys.stderr)
+        DriveWatch(parts.drive, loop.caretaker, ticks, stacks, ended).start(settings.realtime_priority)
         clock.still_collector()
         paths.write_notes(os.getpid())
         log.info("%s ready, pid %d, real time %s", settings.name, os.getpid(), realtime)
@@ -127,6 +134,14 @@ def main() -> int:
         memory.unlink(missing_ok=True)
         os.close(lock)
     return 0
+
+
+def _end_at_once(paths: RigPaths, log: logging.Logger) -> None:
+    """End the process from another thread than the one that hangs; the recorder completes the record."""
+    log.error("the drive does not let go of the loop: the process ends")
+    logging.shutdown()
+    paths.notes.unlink(missing_ok=True)
+    os._exit(EXIT_HANGS)
 
 
 def start_recorder(memory: Path, runs: Path) -> "subprocess.Popen[bytes]":

@@ -117,5 +117,7 @@ class Publisher:
         row["margin"] = p.guard.margin
         row["lateness_us"] = lateness_ns / 1e3
         row["tick"] = state.ticks
+        row["read_us"] = p.drive.read_ns / 1e3
+        row["write_us"] = math.nan if p.drive.write_ns is None else p.drive.write_ns / 1e3
         p.shared.ring.append(row)
         return solved

@@ -33,8 +33,11 @@ class Supervision:
         """What rig, clock and recorder did. To be acted on one by one: a lost link is the last that the drive tells."""
         p, state, machine, monitors = self._parts, self._parts.state, self._parts.machine, self._monitors
         if machine.linked:
-            commanded, moving = state.commanded, machine.moving
-            seen = DriveView(p.drive.name, state.status, state.enabled, commanded, moving, state.measured)
+            failure = p.drive.failure()
+            if failure is not None:
+                yield monitors.failed(failure)
+            commanded, moving, read_ms = state.commanded, machine.moving, p.drive.read_ns / 1e6
+            seen = DriveView(p.drive.name, state.status, state.enabled, commanded, moving, state.measured, read_ms)
             yield from monitors.drive(seen)
         state.tracking_error = math.nan
         if state.commanded:

@@ -2,22 +2,26 @@
 
 `python -m fullpose_server.runtime.recording.recorder --memory FILE --runs DIR`: reads ring and events, and keeps
 the last second before a run too. A fault while no run is recorded is an incident: a record of its own, of the last
-second and of what follows until rest. Ends when its parent does, after the record is complete.
+second and of what follows until rest. Ends when its parent does, after the record is complete;
+and as the one process that lives exactly as long, it ends a parent that hangs for good where no server does.
 """
 
 import argparse
 import contextlib
 import os
 import shutil
+import signal
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fullpose_server.runtime.contract.hung import Hung
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.recording.mcap_writer import RunRecord
+from fullpose_server.session.run_end import RunEnd
 
 CYCLE_S = 0.05
 CHUNK_S = 0.1
@@ -28,6 +32,7 @@ _STATISTICS_S = 1.0
 _AFTER_S = 1.0
 _LONGEST_S = 10.0
 _AT_REST_DEG_S = 0.5
+_HUNG_LOOKS, _PATIENT_LOOKS = 100, 600  # five seconds and more: a server is there before
 
 
 class Recorder:
@@ -70,8 +75,12 @@ class Recorder:
             self._write(self._record, now)
 
     def end(self) -> None:
-        """Complete the record with all there is."""
+        """The rig process is gone: complete the record with all there is."""
         self.cycle(time.monotonic())
+        if self._record is not None and self._until is None and self._alarm_ns is None:
+            now_ns, wall_ns = time.monotonic_ns(), time.time_ns()
+            times = {"time_ns": now_ns, "wall_ns": wall_ns, "head": self._shared.ring.head}
+            self._record.add_event({"kind": "run_end", **times, "how": RunEnd.PROCESS_LOST})
         self._finish()
 
     def _begin(self, event: dict[str, Any]) -> None:
@@ -184,8 +193,13 @@ def main() -> None:
     shared = Shared(given.memory)
     shared.header["recorder_pid"] = os.getpid()
     recorder = Recorder(shared, given.runs)
+    hung = Hung(_HUNG_LOOKS, _PATIENT_LOOKS)
     while os.getppid() == given.parent:
         recorder.cycle(time.monotonic())
+        newest = shared.ring.latest()
+        state = None if newest is None else int(newest["state"][0])
+        if hung.look(shared.header, given.parent, state, time.monotonic_ns()):
+            os.kill(given.parent, signal.SIGKILL)  # our parent: its number is nobody else's while we live
         time.sleep(CYCLE_S)
     recorder.end()
 

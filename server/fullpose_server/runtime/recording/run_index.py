@@ -37,6 +37,8 @@ class RunSummary:
 
     id: str
     rig: str
+    end: str | None  # how it ended, a `RunEnd`; None: not known, or no run, or not ended
+    end_code: str | None  # of the alarm that ended it
     incident: str | None  # code of the alarm that had it kept while no run was recorded; None: a run
     error: str | None  # why it cannot be read; then nothing but its name is known
     plan_id: str | None
@@ -197,6 +199,8 @@ def _named(path: Path) -> RunSummary:
     return RunSummary(
         id=path.stem,
         rig=_rig_of(path.stem),
+        end=None,
+        end_code=None,
         incident=None,
         error=None,
         plan_id=None,
@@ -245,8 +249,12 @@ def summarise(path: Path) -> RunSummary:
     brief = _brief(path)
     rows, events = read_record(path)
     flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & Flag.LEAD == 0)
+    ends = [event for event in events if event.get("kind") == "run_end"]
+    ending: dict[str, Any] = ends[-1] if ends else {}
     return replace(
         brief,
+        end=_word(ending.get("how")),
+        end_code=_word(ending.get("code")),
         started=float(rows["wall_ns"][0]) / 1e9 if rows.size else brief.started,
         ended=float(rows["wall_ns"][-1]) / 1e9 if rows.size else None,
         samples=int(rows.size),
@@ -280,6 +288,10 @@ def _stamp(run: str) -> float | None:
 def _largest(values: np.ndarray[Any, Any]) -> float | None:
     seen = values[np.isfinite(values)]
     return float(seen.max()) if seen.size else None
+
+
+def _word(value: Any) -> str | None:
+    return value if isinstance(value, str) else None
 
 
 def _object(text: str | None) -> dict[str, Any]:

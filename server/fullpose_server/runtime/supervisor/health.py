@@ -3,8 +3,11 @@
 import time
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract.drive_call import pending
+from fullpose_server.runtime.contract.hung import is_silent
 from fullpose_server.runtime.contract.shared_memory import Shared
 
 
@@ -39,8 +42,17 @@ def health_of(
             free_bytes=int(header["recorder_free_bytes"][0]),
             error=_text(header["recorder_error"][0]),
         ),
+        drive=_drive(header),
         live=published.live,
     )
+
+
+def _drive(header: NDArray[np.void]) -> messages.DriveHealth:
+    read, longest_read, write, longest_write = (
+        int(header[name][0]) / 1e3 for name in ("read_ns", "read_max_ns", "write_ns", "write_max_ns")
+    )
+    call = pending(header) if is_silent(header, time.monotonic_ns()) else None
+    return messages.DriveHealth(read, longest_read, write, longest_write, None if call is None else call.call.word)
 
 
 def _text(value: np.bytes_) -> str:

@@ -2,19 +2,22 @@
 
 The process outlives the server. A living one is found by its lock and adopted, session, lease, alarms and all. One
 that runs by other settings than ours is replaced where nothing is bound in it, else kept as it is. A pidfd tells at
-once when it dies; the next comes up disconnected and carries the alarm.
+once when it dies; the next comes up disconnected and carries the alarm. One that hangs for good is killed.
 """
 
 import asyncio
 import contextlib
 import logging
 import os
+import signal
 import time
 from dataclasses import replace
 from pathlib import Path
 
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.contract.drive_call import HANGS
+from fullpose_server.runtime.contract.hung import Hung
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared, SharedError
 from fullpose_server.runtime.supervisor.control_link import StandingLink
@@ -28,6 +31,7 @@ from fullpose_server.session.states import State
 log = logging.getLogger(__name__)
 REPLY_S = 5.0
 POLL_S = 0.005
+_HUNG_LOOKS, _PATIENT_LOOKS = 200, 4000  # a second, and twenty, of a server that is on time
 _END_S = 15.0
 _PUBLISH_S = 10.0
 _RESPAWNS = 3  # in a minute; then a person must look
@@ -49,6 +53,8 @@ class ProcessManager:
         self._adopted = False
         self._pidfd = -1
         self._respawned: list[float] = []
+        self._hung = Hung(_HUNG_LOOKS, _PATIENT_LOOKS)
+        self._killed = ""  # why, where we did it
         self._watch: asyncio.Task[None] | None = None
         self._heartbeat: Heartbeat | None = None
 
@@ -151,8 +157,8 @@ class ProcessManager:
             with contextlib.suppress(RigUnreachableError):
                 await (await self._link.current()).request("exit", "server", timeout_s=REPLY_S)
             await asyncio.sleep(0.05)
-            if time.monotonic() > deadline:
-                raise HostError(f"rig process {pid} of {self._config.name} does not end")
+            if time.monotonic() > deadline and not self._killed:
+                self._kill(" (it did not end when it was told)")
         await self._view.wait_dead()  # it gives its lock up a little before it is gone
         await self._launcher.reaped(pid)
 
@@ -161,6 +167,7 @@ class ProcessManager:
             await asyncio.sleep(POLL_S)
             if not self._view.dead:
                 self._view.poll()
+                self._end_hung()
                 continue
             try:
                 await self._revive()
@@ -168,6 +175,21 @@ class ProcessManager:
                 log.warning("rig %s is not started anew: %s", self._config.name, cause)
                 await asyncio.to_thread(_append, self._paths.log, f"server: {cause}\n")
                 await asyncio.sleep(_RETRY_S)
+
+    def _end_hung(self) -> None:
+        """Kill a process that hangs for good; that it is gone, the pidfd tells."""
+        newest = self._view.latest()
+        state = None if newest is None else int(newest["state"][0])
+        if self._killed or not self._hung.look(self._view.memory.header, self._view.pid, state, time.monotonic_ns()):
+            return
+        why = "".join(f" ({a.message})" for a in self._view.snapshot().alarms if a.code == HANGS)
+        self._kill(why or " (it gave no sign of life, and was in no call of its drive)")
+
+    def _kill(self, why: str) -> None:
+        self._killed = why
+        log.error("rig %s: process %d hangs and is killed%s", self._config.name, self._view.pid, why)
+        with contextlib.suppress(ProcessLookupError):
+            signal.pidfd_send_signal(self._pidfd, signal.SIGKILL)
 
     def _watch_ended(self, watch: asyncio.Task[None]) -> None:
         if not watch.cancelled():
@@ -181,7 +203,8 @@ class ProcessManager:
             return
         self._respawned.append(now)
         last = self._view.published()
-        lost = _loss(last, self._launcher.status(self._view.pid))
+        lost = _loss(last, self._launcher.status(self._view.pid), self._killed)
+        self._killed = ""
         await self._detach()
         pid = self._paths.running()  # one that came up and could not be reached
         if pid is None:
@@ -189,12 +212,15 @@ class ProcessManager:
         await self._attach(pid)
 
 
-def _loss(last: messages.Published, code: int | None) -> str:
-    """What is said of a process that died; `code` is how, where that is known (negative: by that signal)."""
+def _loss(last: messages.Published, code: int | None, killed: str) -> str:
+    """What is said of a process that died; `code` is how, where that is known (negative: by that signal).
+
+    `killed` is why we did it, where we did.
+    """
     how = ""
     if code is not None:
         how = f" (signal {-code})" if code < 0 else f" (exit status {code})"
-    why = "".join(f" ({a.message})" for a in last.alarms if a.code == "internal_error")
+    why = killed or "".join(f" ({a.message})" for a in last.alarms if a.code in ("internal_error", HANGS))
     return f"the rig process died{how}{why} while {last.state}; the drive brakes by its own watchdog"
 
 

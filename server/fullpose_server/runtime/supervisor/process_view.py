@@ -9,14 +9,15 @@ import time
 from dataclasses import replace
 from typing import Any
 
-from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract import drive_call, messages
+from fullpose_server.runtime.contract.drive_call import HANGS, pending
+from fullpose_server.runtime.contract.hung import is_silent, suspended
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.health import beat_age_s, health_of
+from fullpose_server.session.alarms import Alarm, Severity
 from fullpose_server.session.states import State
-
-SILENT_S = 0.15  # a rig heartbeat older than this counts as not responding
 
 
 class ProcessView:
@@ -50,7 +51,7 @@ class ProcessView:
 
     def poll(self) -> None:
         """Look whether there is anything new, and wake who waits for it."""
-        responding = self.beat_age_s() < SILENT_S
+        responding = not self._silent()
         if responding != self._responding:
             self._responding = responding
             self._offset += 1
@@ -136,7 +137,7 @@ class ProcessView:
     def snapshot(self) -> messages.Snapshot:
         """The session as of now; of a dead process its last words, disconnected, with nothing allowed."""
         published = self.published()
-        alive = not self._dead and self.beat_age_s() < SILENT_S
+        alive = not self._dead and not self._silent()
         health = health_of(self.memory, published, pid=self._pid, alive=alive, rate_hz=self.rate_hz)
         newest = self.latest()
         pose = [0.0] * 4 if newest is None else [float(v) for v in newest["measured"][0]]
@@ -153,7 +154,7 @@ class ProcessView:
             allowed=can,
             lease=replace(published.lease, expires_s=left),
             plan=published.plan,
-            alarms=published.alarms,
+            alarms=[*published.alarms, *self._hangs(published)],
             history=published.history,
             shelves=published.shelves,
             run_id=published.run_id,
@@ -166,6 +167,22 @@ class ProcessView:
         """The reply to `command`, given in state `before`, of a process that cannot be reached."""
         body = messages.ErrorBody("rig_unreachable", message, self.state(), command, [])
         return messages.Reply(False, before, self.state(), self.revision, body)
+
+    def _silent(self) -> bool:
+        return is_silent(self.memory.header, time.monotonic_ns())
+
+    def _hangs(self, published: messages.Published) -> list[Alarm]:
+        """What a process cannot say itself whose drive keeps every thread of it from running."""
+        call = None if self._dead or not self._silent() else pending(self.memory.header)
+        if call is None or suspended(self._pid):
+            return []
+        message = drive_call.hanging(published.drive, call, time.monotonic_ns(), time.time_ns())
+        braked = "no thread of its process runs, so its own watchdog must brake the table"
+        number = 1 + max((alarm.number for alarm in published.history), default=0)
+        chained = any(alarm.severity is not Severity.WARNING for alarm in published.alarms)
+        since_s = time.time() - (time.monotonic_ns() - call.since_ns) / 1e9
+        alarm = Alarm(number, HANGS, Severity.FAULT, f"{message}; {braked}", since_s, first=not chained)
+        return [alarm]
 
     def _announce(self) -> None:
         if self._shared is not None:
