@@ -1,7 +1,7 @@
 .PHONY: demo quick test format clean
 # Everything a fresh machine needs: python3 and make.
 
-demo: ## installs, serves, a real flight is flying; the first line is the address
+demo: ## installs, serves, a real flight is flying; the address is printed once it answers
 	@tools/demo
 
 quick: ## the gates that take a minute: format, lint, imports, types, the console's, the house's

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fullpose_server.cli._arguments import Config
-from fullpose_server.cli._exit import CommandError, say
+from fullpose_server.cli._exit import CommandError
 
 if TYPE_CHECKING:
     from fullpose_server.client import Client
 
 RIG, METHOD = "vertical-4", "plan"
 FLIGHT, CONVENTION, NAME = "loop.csv", "ned", "Loop, A-4 Skyhawk"
-PAUSE_S = 3.0
+PAUSE_S, LONGEST_PAUSE_S = 3.0, 60.0
 RENEW_S = 1.0
 LATCHED = ("estopped", "faulted")
 
@@ -52,12 +52,11 @@ async def fly(url: str) -> None:
 
     try:
         async with Client(url, name="demo") as client:
-            plan = await prepare(client)
-            sys.stdout.write(f"{NAME} on {RIG}: planned with {plan['method']}, flying it over and over. Ctrl-C ends.\n")
-            sys.stdout.flush()
+            _tell(f"{NAME} on {RIG}: planning it")
+            pilot = Pilot(client, await prepare(client))
             while True:
-                await turn(client, plan)
-                await asyncio.sleep(PAUSE_S)
+                await pilot.turn()
+                await asyncio.sleep(pilot.pause_s)
     except ClientError as error:
         raise CommandError(str(error)) from error
 
@@ -78,39 +77,81 @@ async def prepare(client: "Client") -> dict[str, Any]:
     return plan
 
 
-async def turn(client: "Client", plan: dict[str, Any]) -> None:
-    """Bring the session to its next step: one command where it is ours to give one, else nothing."""
-    from fullpose_server.client import ClientError
+class Pilot:
+    """Flies the plan as an operator would: one command a turn, and what keeps it from flying is said."""
 
-    session = await client.session(RIG)
-    holder, state = session["lease"]["holder"], session["state"]
-    if holder not in (None, client.name) or state in LATCHED:
-        return  # an operator has the rig, or must look at it first
-    try:
-        await client.take_lease(RIG)
-        match state:
+    def __init__(self, client: "Client", plan: dict[str, Any]) -> None:
+        self._client = client
+        self._plan = plan
+        self._said = ""
+        self.pause_s = PAUSE_S  # until the next turn; longer where fault follows fault
+
+    async def turn(self) -> None:
+        """Bring the session to its next step, where it is ours to bring."""
+        from fullpose_server.client import ClientError
+
+        session = await self._client.session(RIG)
+        if session["lease"]["holder"] not in (None, self._client.name):
+            self._say(f"{session['lease']['holder']} has the rig")
+            return
+        if session["state"] == "estopped":
+            self._say(f"{RIG} is E-stopped: look at it, acknowledge and reset")
+            return
+        try:
+            await self._client.take_lease(RIG)
+            await self._step(session)
+        except ClientError as error:
+            if error.status not in (403, 409, 503):
+                raise
+            if session["state"] != "faulted":  # where it is, a reset is refused until the rig is at rest
+                self._say(str(error))
+
+    async def _step(self, session: dict[str, Any]) -> None:
+        match session["state"]:
+            case "faulted":
+                await self._reset(session["alarms"])
             case "disconnected":
-                await client.command(RIG, "connect")
+                await self._command("connect")
             case "idle":
-                await client.command(RIG, "load", plan=plan["id"])
+                await self._command("load", plan=self._plan["id"])
             case "ready":
-                await client.command(RIG, "arm")
+                await self._command("arm")
             case "armed":
-                await client.command(RIG, "start")
-                await watch(client)
-    except ClientError as error:
-        if error.status not in (403, 409, 503):
-            raise
-        say(f"demo: {error}")
+                await self._command("start")
+                self._say(f"{NAME} on {RIG}: flying, planned with {self._plan['method']}. Ctrl-C ends.")
+                if await watch(self._client) == "armed":
+                    self.pause_s = PAUSE_S
+
+    async def _reset(self, alarms: list[dict[str, Any]]) -> None:
+        cause = next((alarm for alarm in alarms if alarm["first"]), {"message": "no alarm says why"})
+        self._say(f"{RIG} is faulted: {cause['message']}. It goes on once at rest")
+        await self._command("acknowledge")
+        await self._command("reset")
+        self.pause_s = min(2.0 * self.pause_s, LONGEST_PAUSE_S)
+
+    async def _command(self, command: str, **args: Any) -> None:
+        await self._client.command(RIG, command, **args)
+
+    def _say(self, text: str) -> None:
+        """Once, while nothing else is to be said."""
+        if text != self._said:
+            self._said = text
+            _tell(text)
 
 
-async def watch(client: "Client") -> None:
-    """Renew the lease until the run has ended, or an operator has taken over."""
+def _tell(text: str) -> None:
+    sys.stdout.write(f"{text}\n")
+    sys.stdout.flush()
+
+
+async def watch(client: "Client") -> str:
+    """Renew the lease until the run has ended, or an operator has taken over; the state then."""
     from fullpose_server.client import ClientError
 
     renewing = asyncio.create_task(_renew(client))
     try:
-        await client.wait_state(RIG, "armed", "ready", "idle", "disconnected", *LATCHED)
+        ended = await client.wait_state(RIG, "armed", "ready", "idle", "disconnected", *LATCHED)
+        return str(ended["state"])
     finally:
         renewing.cancel()
         with suppress(asyncio.CancelledError, ClientError):
