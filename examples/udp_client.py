@@ -25,7 +25,7 @@ for sequence in range(int(seconds * 500)):
     yaw, pitch, roll = (ramp * a * math.sin(w * t) for a, w in ((30, 0.7), (15, 1.1), (40, 0.9)))
     link.send(struct.pack("<4sIQd4d3d", b"FPA1", 2, sequence, t, yaw, pitch, roll, 0.0, *rates))
     try:
-        _, status, _, _, *n = struct.unpack("<4sIQd4d4d", link.recv(88))
+        _, status, _, _, *n = struct.unpack("<4sIQd4d4d2d", link.recv(104))
     except TimeoutError:
         continue
     time.sleep(max(0.0, begun + 0.002 * (sequence + 1) - time.monotonic()))

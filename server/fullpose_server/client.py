@@ -16,6 +16,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 API = "/api/v1"
 POLL_S = 0.1
+START_S = 180.0  # of a rig's process, at the most
 
 
 class ClientError(Exception):
@@ -127,7 +128,8 @@ class Client:
                 if error.status != 403:
                     raise
         body = {"action": action} if action in ("take", "takeover", "request") else self._proving(rig, action)
-        held = await self._object("POST", f"/rigs/{quote(rig)}/lease", json=body)
+        # What answers a secret tells it once: it is waited for though the rig's process has to start before.
+        held = await self._object("POST", f"/rigs/{quote(rig)}/lease", json=body, timeout=START_S)
         given = held.pop("secret", None)
         if action == "request":
             lease.requested = given

@@ -64,6 +64,9 @@ class Settings(BaseSettings):
         default=5.0, ge=0.0, le=1000.0
     )  # flown that much late: jitter up to it is interpolated
     live_extrapolate_ms: float = Field(default=50.0, gt=0.0, le=2000.0)  # bridged; then the source is lost
+    live_max_rate_deg_s: float | None = Field(
+        default=None, gt=0.0
+    )  # of a sample that is used; None: what the rig can do
     stop_rigs_on_exit: bool = True  # at an orderly end; a server that is killed leaves its rigs to be adopted again
 
     @property

@@ -199,6 +199,7 @@ class _RigProcess:
                 udp_port=settings.live_udp_ports.get(rig),
                 delay_ms=settings.live_delay_ms,
                 extrapolate_ms=settings.live_extrapolate_ms,
+                max_rate_deg_s=settings.live_max_rate_deg_s,
             ),
             shelves=self._shelves(rig),
             **vars(entry.operating),

@@ -1417,6 +1417,11 @@ export interface components {
              */
             dropped: number;
             /**
+             * Implausible
+             * @description Beyond a plausible body rate: not used
+             */
+            implausible: number;
+            /**
              * Rate Hz
              * @description Samples taken in the last second or so
              */
@@ -1458,6 +1463,7 @@ export interface components {
             latency_us: number;
             /** Margin */
             margin: number | null;
+            refused: components["schemas"]["SampleRefused"] | null;
             /**
              * Sequence
              * @description Counts the samples of this client, from 0
@@ -1466,7 +1472,7 @@ export interface components {
             /** Server Latency Us */
             server_latency_us: number | null;
             /** Status */
-            status: ("followed" | "limited" | "dropped" | "idle")[];
+            status: ("followed" | "limited" | "dropped" | "idle" | "implausible")[];
             /** Time S */
             time_s: number;
             /**
@@ -2491,6 +2497,29 @@ export interface components {
             started_at: string | null;
             /** Who */
             who: string;
+        };
+        /**
+         * SampleRefused
+         * @description Why a sample was not used: its `value` is beyond the `limit`, both in `unit`.
+         */
+        SampleRefused: {
+            /**
+             * Code
+             * @constant
+             */
+            code: "implausible_rate";
+            /** Limit */
+            limit: number;
+            /**
+             * Unit
+             * @constant
+             */
+            unit: "deg/s";
+            /**
+             * Value
+             * @description The body rate, as the sample says or as it takes; null: no number
+             */
+            value: number | null;
         };
         /**
          * ScenePoseIn

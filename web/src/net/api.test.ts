@@ -23,7 +23,8 @@ it.each([
   ["stop", 2, () => api.stop("rig")],
   ["estop", 2, () => api.estop("rig")],
   ["a command", 10, () => api.command("rig", "hold", {}, null)],
-  ["the lease", 10, () => api.lease("rig", "renew")],
+  ["the lease", 10, () => api.lease("rig", "renew", "secret")],
+  ["the lease, which may have to start a process", 180, () => api.lease("rig", "take")],
   ["what is read", 60, () => api.plans()],
 ])("%s waits %d s for an answer, and says that none came", async (_, seconds, send) => {
   await expect(send()).rejects.toMatchObject({ status: 0, message: `The server did not answer within ${seconds} s` });

@@ -16,6 +16,8 @@ import { upload } from "./upload";
 const STOP = { withinMs: 2000 };
 const COMMAND = { withinMs: 10_000 };
 const READ = { withinMs: 60_000 };
+/** To one that answers a secret, which is told once: it is waited for though the rig's process has to start before. */
+const GIVEN = { withinMs: 180_000 };
 
 export const api = {
   health: () => request("get", "/api/v1/health", {}, READ),
@@ -52,7 +54,12 @@ export const api = {
   },
   /** `secret`: the lease's, for what only its holder may do. */
   lease: (rig: string, action: LeaseAction, secret?: string) =>
-    request("post", "/api/v1/rigs/{rig}/lease", { rig }, { ...COMMAND, body: { action, secret: secret ?? null } }),
+    request(
+      "post",
+      "/api/v1/rigs/{rig}/lease",
+      { rig },
+      { ...(secret === undefined ? GIVEN : COMMAND), body: { action, secret: secret ?? null } },
+    ),
   stop: (rig: string) => request("post", "/api/v1/rigs/{rig}/stop", { rig }, STOP),
   estop: (rig: string) => request("post", "/api/v1/rigs/{rig}/estop", { rig }, STOP),
 

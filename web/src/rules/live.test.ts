@@ -10,7 +10,16 @@ it("says whether a live source is followed", () => {
 });
 
 it("tells rate, age and what was not used", () => {
-  const health = { rate_hz: 499.6, age_ms: -2.4, accepted: 900, dropped: 0, bad: 0, clock_steps: 0, way_age_ms: null };
+  const health = {
+    rate_hz: 499.6,
+    age_ms: -2.4,
+    accepted: 900,
+    dropped: 0,
+    bad: 0,
+    clock_steps: 0,
+    implausible: 0,
+    way_age_ms: null,
+  };
   expect(liveFigures(null)).toBe("");
   expect(liveFigures({ ...health, accepted: 0 })).toBe("");
   expect(liveFigures(health)).toBe("500 Hz · 2 ms ahead");

@@ -22,7 +22,7 @@ export function liveFigures(health: LiveHealth | null): string {
   if (health.age_ms !== null) {
     said.push(health.age_ms > 0 ? `${fixed(health.age_ms, 0)} ms late` : `${fixed(-health.age_ms, 0)} ms ahead`);
   }
-  const unused = health.dropped + health.bad;
+  const unused = health.dropped + health.bad + health.implausible;
   if (unused > 0) said.push(`${integer(unused)} not used`);
   if (health.way_age_ms !== null && health.way_age_ms > 500)
     said.push(`planner silent ${fixed(health.way_age_ms / 1000, 1)} s`);

@@ -40,6 +40,7 @@ _NAMES: tuple[tuple[LiveStatus, SampleStatus], ...] = (
     (LiveStatus.LIMITED, "limited"),
     (LiveStatus.DROPPED, "dropped"),
     (LiveStatus.IDLE, "idle"),
+    (LiveStatus.IMPLAUSIBLE, "implausible"),
 )
 _KINDS = {
     ("nue", True): Kind.QUATERNION,
@@ -195,5 +196,8 @@ def reply_json(reply: LiveReply, age_s: float | None) -> str:
         "margin": reply.margin if math.isfinite(reply.margin) else None,
         "latency_us": reply.latency_us,
         "server_latency_us": None if age_s is None else age_s * 1e6,
+        "refused": None,
     }
+    if reply.status & LiveStatus.IMPLAUSIBLE:
+        message["refused"] = {"code": "implausible_rate", "value": reply.value, "limit": reply.limit, "unit": "deg/s"}
     return msgspec.json.encode(message).decode()

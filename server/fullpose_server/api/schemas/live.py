@@ -1,6 +1,6 @@
 """Messages of the WebSocket /rigs/{rig}/live, both ways, tagged by `type`.
 
-A sample may also come as a binary message of 80 bytes, and is then answered by one of 88: the datagrams of UDP
+A sample may also come as a binary message of 80 bytes, and is then answered by one of 104: the datagrams of UDP
 (docs/guide/live.md). Several may come in one message.
 """
 
@@ -12,7 +12,7 @@ from fullpose_server.api.schemas.base import Four, Number, Problem, Three, Wire,
 from fullpose_server.api.schemas.session import LeaseToken, LiveLoad
 from fullpose_server.session.states import State
 
-SampleStatus = Literal["followed", "limited", "dropped", "idle"]
+SampleStatus = Literal["followed", "limited", "dropped", "idle", "implausible"]
 
 
 class OpenLive(LiveLoad):
@@ -54,6 +54,15 @@ class LiveOpened(Wire):
     loaded: bool = Field(description="Whether the session has a live source loaded")
 
 
+class SampleRefused(Wire):
+    """Why a sample was not used: its `value` is beyond the `limit`, both in `unit`."""
+
+    code: Literal["implausible_rate"]
+    value: float | None = Field(description="The body rate, as the sample says or as it takes; null: no number")
+    limit: float
+    unit: Literal["deg/s"]
+
+
 class LiveReplyOut(Wire):
     """What became of a sample; null is not a number: nothing is followed.
 
@@ -72,6 +81,7 @@ class LiveReplyOut(Wire):
     margin: float | None
     latency_us: float
     server_latency_us: float | None
+    refused: SampleRefused | None
 
 
 class LiveProblem(Wire):

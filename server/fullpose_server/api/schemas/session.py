@@ -266,6 +266,7 @@ class LiveOut(Wire):
     dropped: int = Field(description="Late, doubled or overtaken: not used")
     bad: int = Field(description="No samples at all")
     clock_steps: int = Field(description="How often the source's clock began anew")
+    implausible: int = Field(description="Beyond a plausible body rate: not used")
     way_age_ms: float | None = Field(description="Since the preview's planner was heard; null: no such method")
 
 

@@ -1,5 +1,6 @@
 """What a rig process is told at its start: one JSON file, one frozen dataclass."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,9 @@ __all__ = [
 ]
 
 
+UNLIMITED_RATE_DEG_S = 3600.0  # ten turns a second
+
+
 @dataclass(frozen=True)
 class LiveConfig:
     """The live source: where its UDP port listens (None: no port), and how jitter is bridged."""
@@ -40,6 +44,7 @@ class LiveConfig:
     udp_host: str = "127.0.0.1"
     delay_ms: float = 5.0  # the target is the source's attitude this long ago: jitter up to it is interpolated
     extrapolate_ms: float = 50.0
+    max_rate_deg_s: float | None = None  # of the body: a sample beyond it is refused; None: see `plausible_rate`
 
     def __post_init__(self) -> None:
         if self.udp_port is not None and not 1 <= self.udp_port <= 65535:
@@ -48,6 +53,19 @@ class LiveConfig:
             raise ConfigError("udp_host", self.udp_host, "an address of this machine")
         check_not_negative(self, "delay_ms")
         check_positive(self, "extrapolate_ms")
+        if self.max_rate_deg_s is not None:
+            check_positive(self, "max_rate_deg_s")
+
+    def plausible_rate(self, rig: Rig) -> float:
+        """The greatest body rate of a sample that is used [rad/s].
+
+        As said; otherwise what the frames could ever turn the payload at, all of them together at their rate limits;
+        `UNLIMITED_RATE_DEG_S` for a rig with a frame that has none.
+        """
+        if self.max_rate_deg_s is not None:
+            return math.radians(self.max_rate_deg_s)
+        together = float(rig.max_rate[list(rig.geometry.frames)].sum())
+        return together if math.isfinite(together) else math.radians(UNLIMITED_RATE_DEG_S)
 
 
 @dataclass(frozen=True)

@@ -80,6 +80,7 @@ class LiveHealth:
     dropped: int
     bad: int
     clock_steps: int
+    implausible: int
     way_age_ms: float | None  # since the preview's planner was heard; None: no such method
 
 

@@ -19,6 +19,7 @@ from fullpose_server.runtime.live.packets import LiveSample
 _KEPT = 64  # samples, beside those that are known ahead
 _FASTEST_HZ = 1000.0  # of a source
 _DRIFT = 2e-4  # [s/s] of the offset, upward: more than two quartz clocks differ
+_NOISE = math.radians(0.1)  # of an attitude: between samples that come close together it is no rate
 _STEP_S = 0.5  # of its clock: a sample farther off is none of it
 # What makes a new clock of samples that are not used: so many, over so long, offsets so close. Old samples that come
 # all at once are many too, but do not come as fast as their times go.
@@ -140,6 +141,20 @@ class LiveBuffer:
         self._end += 1
         self.accepted += 1
         return True
+
+    def rate_of(self, sample: LiveSample) -> float:
+        """The body rate of a sample [rad/s]: as it says, or as it takes to come there from the one before, the greater.
+
+        Of a sample that is not the next of its source: as it says.
+        """
+        said = 0.0 if sample.rate is None else math.hypot(*sample.rate)
+        if not self._end:
+            return said
+        after_s = sample.time_s - float(self._time[self._end - 1])
+        if after_s <= 0.0 or sample.sequence <= self._sequence:
+            return said
+        cosine = min(1.0, abs(float(self._q[self._end - 1] @ np.array(sample.quaternion))))
+        return max(said, (2.0 * math.acos(cosine) - _NOISE) / after_s)
 
     def _is_anew(self, sample: LiveSample, now: float) -> bool:
         """Whether this unused sample and those right before it are a source that began anew."""

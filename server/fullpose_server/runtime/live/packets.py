@@ -13,8 +13,8 @@ SAMPLE_MAGIC = b"FPA1"
 REPLY_MAGIC = b"FPR1"
 # magic, kind, sequence, source's time [s], four numbers of attitude, three of body rate [deg/s]
 _SAMPLE = struct.Struct("<4sIQd4d3d")
-# magic, status, sequence, source's time [s], angles [deg], solve error, lag, margin, latency [us]
-_REPLY = struct.Struct("<4sIQd4d4d")
+# magic, status, sequence, source's time [s], angles [deg], solve error, lag, margin, latency [us], value, limit
+_REPLY = struct.Struct("<4sIQd4d4d2d")
 SAMPLE_SIZE = _SAMPLE.size
 REPLY_SIZE = _REPLY.size
 
@@ -35,6 +35,7 @@ class LiveStatus(IntFlag):
     LIMITED = 2  # limits keep it from the attitude
     DROPPED = 4  # out of order, sent twice, or no numbers: not used
     IDLE = 8  # the session is not live: nothing moves
+    IMPLAUSIBLE = 16  # its body rate is beyond what is plausible: not used; the reply says both
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,8 @@ class LiveReply:
 
     angles: commanded in the tick that took it [deg]; error_deg: of those angles against the attitude flown then;
     lag_deg: against this very sample (what delay, limits and prediction leave); margin: smallest relative distance to
-    a limit; latency_us: from the sample's arrival in the rig process to this reply.
+    a limit; latency_us: from the sample's arrival in the rig process to this reply; value and limit: the body rate for
+    which it was refused, and the greatest that is used [deg/s], nan where it was not.
     """
 
     status: int
@@ -64,6 +66,8 @@ class LiveReply:
     lag_deg: float
     margin: float
     latency_us: float
+    value: float = math.nan
+    limit: float = math.nan
 
 
 def encode_sample(
@@ -125,6 +129,8 @@ def encode_reply(reply: LiveReply) -> bytes:
         reply.lag_deg,
         reply.margin,
         reply.latency_us,
+        reply.value,
+        reply.limit,
     )
 
 
@@ -133,4 +139,4 @@ def decode_reply(data: bytes) -> LiveReply | None:
     if len(data) != REPLY_SIZE or not data.startswith(REPLY_MAGIC):
         return None
     _, status, sequence, time_s, *n = _REPLY.unpack(data)
-    return LiveReply(status, sequence, time_s, tuple(n[:4]), n[4], n[5], n[6], n[7])
+    return LiveReply(status, sequence, time_s, tuple(n[:4]), n[4], n[5], n[6], n[7], n[8], n[9])

@@ -16,6 +16,7 @@ from fullpose._typing import Array
 from fullpose.rig import Rig
 from fullpose_server.runtime.contract.config import LiveConfig
 from fullpose_server.runtime.contract.messages import LiveHealth
+from fullpose_server.runtime.live.admission import Admission, Taken, Verdict
 from fullpose_server.runtime.live.buffer import LiveBuffer
 from fullpose_server.runtime.live.factory import live_step
 from fullpose_server.runtime.live.packets import (
@@ -32,7 +33,6 @@ from fullpose_server.runtime.motion.path_player import attitude_error
 
 _PER_TICK = 16
 _RATE_SPAN_S = 1.0
-_SOURCE_SILENT_S = 0.5  # then another may be followed in its place
 _DEG = 180.0 / math.pi
 
 
@@ -76,6 +76,9 @@ class LiveView(NamedTuple):
     dropped: int
     clock_steps: int
     strangers: int
+    implausible: int
+    implausible_deg_s: float  # of the newest of them
+    plausible_deg_s: float  # the greatest that is used
 
 
 class LiveSource:
@@ -93,7 +96,8 @@ class LiveSource:
         self._settings = LiveSettings()
         self._links = tuple(links)
         self._monotonic = monotonic
-        self._waiting: list[tuple[LiveSample, bool, float, Link, Any]] = []
+        self._waiting: list[Taken] = []
+        self._admission = Admission(config.plausible_rate(rig))
         self._now = 0.0
         self._begun = 0.0
         self._following = False
@@ -101,9 +105,6 @@ class LiveSource:
         self.stale = self.limited = False
         self.acquired = False  # the source's attitude was reached once
         self.bad = 0
-        self.strangers = 0  # samples of another source than the one that is followed
-        self._source: tuple[int, Any] | None = None  # socket and sender that is followed
-        self._source_at = 0.0  # [s] when it was heard
         self.last_age_ms = 0.0
         self.rate_hz = 0.0
         self._rated = (0.0, 0)  # when, and samples by then
@@ -145,8 +146,7 @@ class LiveSource:
         self._following = True
         self.acquired = False
         self.stale = self.limited = False
-        self._source = None
-        self.strangers = 0
+        self._admission.begin()
 
     def end(self) -> None:
         """The session is no longer live."""
@@ -169,19 +169,17 @@ class LiveSource:
                 if sample is None:
                     self.bad += 1
                     continue
-                used = self._following and self._is_followed(each, sender, now) and self._take(sample, now)
-                self._waiting.append((sample, used, self._monotonic(), each, sender))
+                verdict = self._verdict(sample, (each.fileno(), sender), now)
+                self._waiting.append(Taken(sample, verdict, self._monotonic(), each, sender))
 
-    def _is_followed(self, via: Link, sender: Any, now: float) -> bool:
-        """One source a rig: the first to be heard, until it has been silent for a while."""
-        source = (via.fileno(), sender)
-        if source != self._source:
-            if self._source is not None and now - self._source_at < _SOURCE_SILENT_S:
-                self.strangers += 1
-                return False
-            self._source = source
-        self._source_at = now
-        return True
+    def _verdict(self, sample: LiveSample, source: tuple[int, Any], now: float) -> Verdict:
+        """Use a sample, or say why not."""
+        if not self._following:
+            return Verdict(LiveStatus.IDLE)
+        verdict = self._admission.verdict(source, self._buffer.rate_of(sample), now)
+        if verdict.unused or self._take(sample, now):
+            return verdict
+        return Verdict(LiveStatus.DROPPED)
 
     def _take(self, sample: LiveSample, now: float) -> bool:
         step, clock_steps = self._loaded(), self._buffer.steps
@@ -217,16 +215,19 @@ class LiveSource:
 
     def reply(self, x: Array, error_deg: float, margin: float, now: float) -> None:
         """Answer the samples taken in this tick: x (4,) [rad] was commanded."""
-        for sample, used, arrived, via, sender in self._waiting:
-            status = LiveStatus.IDLE if not self._following else LiveStatus.FOLLOWED
-            if self._following and not used:
-                status = LiveStatus.DROPPED
-            elif self.limited:
+        for taken in self._waiting:
+            sample, via, sender = taken.sample, taken.via, taken.sender
+            status = taken.verdict.unused or (LiveStatus.FOLLOWED if self._following else LiveStatus.IDLE)
+            if status is LiveStatus.FOLLOWED and self.limited:
                 status |= LiveStatus.LIMITED
+            value = taken.verdict.rate * _DEG
+            limit = math.nan if math.isnan(value) else self._admission.plausible * _DEG
             lag = attitude_error(self._rig.axes, x, np.array(sample.quaternion)) * _DEG
             angles = tuple((x * _DEG).tolist())
-            latency = (now - arrived) * 1e6
-            reply = LiveReply(int(status), sample.sequence, sample.time_s, angles, error_deg, lag, margin, latency)
+            latency = (now - taken.arrived) * 1e6
+            reply = LiveReply(
+                int(status), sample.sequence, sample.time_s, angles, error_deg, lag, margin, latency, value, limit
+            )
             if sender:
                 try:
                     via.sendto(encode_reply(reply), sender)
@@ -256,7 +257,10 @@ class LiveSource:
             self.bad,
             b.dropped,
             b.steps,
-            self.strangers,
+            self._admission.strangers,
+            self._admission.implausible,
+            self._admission.implausible_rate * _DEG,
+            self._admission.plausible * _DEG,
         )
 
     def health(self) -> LiveHealth | None:
@@ -275,6 +279,7 @@ class LiveSource:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Samples accepted, dropped (late or doubled), bad (no sample at all), and steps of the source's clock."""
+        """Samples accepted, dropped (late or doubled), bad (no sample at all), implausible, and steps of the clock."""
         b = self._buffer
-        return {"accepted": b.accepted, "dropped": b.dropped, "bad": self.bad, "clock_steps": b.steps}
+        told = {"accepted": b.accepted, "dropped": b.dropped, "bad": self.bad, "clock_steps": b.steps}
+        return told | {"implausible": self._admission.implausible}

@@ -209,6 +209,10 @@ class Monitors:
         ):
             if self._more(word, count):
                 found.append(said(f"live_{word}", text))
+        if self._more("implausible", live.implausible):
+            text = f"a sample of the live source turns the body at {live.implausible_deg_s:.6g} deg/s: not used"
+            value, limit = live.implausible_deg_s, live.plausible_deg_s
+            found.append(Violation(Finding("live_implausible_rate", False, text, None, value, limit, "deg/s")))
         if lost:
             text = f"no sample of the live source for {live.age_ms:.0f} ms"
             found.append(Violation(Finding("live_source_lost", False, text, None, live.age_ms, math.nan, "ms")))

@@ -117,3 +117,16 @@ def test_signs_of_quaternions_do_not_matter() -> None:
         buffer.add(LiveSample(i, i * 0.01, (a, b, c, d), None), 100.0 + i * 0.01)
     buffer.at(100.155, q)
     assert angle_deg(q, flight(3.155)[0]) < 0.01
+
+
+def test_the_rate_of_a_sample_is_the_greater_of_what_it_says_and_what_it_takes() -> None:
+    buffer = LiveBuffer(0.0)
+    level, turned = (1.0, 0.0, 0.0, 0.0), (np.cos(0.05), np.sin(0.05), 0.0, 0.0)  # by 0.1 rad
+    assert buffer.rate_of(LiveSample(0, 0.0, turned, None)) == 0.0
+    buffer.add(LiveSample(0, 0.0, level, None), 100.0)
+    assert buffer.rate_of(LiveSample(1, 0.1, turned, None)) == pytest.approx((0.1 - np.radians(0.1)) / 0.1)
+    assert buffer.rate_of(LiveSample(1, 0.1, turned, (3.0, 0.0, 4.0))) == 5.0
+    opposite = tuple(-v for v in turned)
+    assert buffer.rate_of(LiveSample(1, 0.1, opposite, None)) < 1.0  # the same attitude
+    assert buffer.rate_of(LiveSample(1, 1e-6, (1.0, 5e-4, 0.0, 0.0), None)) == 0.0  # noise, however close they come
+    assert buffer.rate_of(LiveSample(1, 0.0, turned, None)) == 0.0  # no next one

@@ -65,5 +65,5 @@ def test_what_is_no_sample_is_not_believed(data: bytes) -> None:
 
 
 def test_replies_come_back_as_they_went() -> None:
-    reply = LiveReply(int(LiveStatus.FOLLOWED), 5, 2.5, (1.0, 2.0, 3.0, 4.0), 1e-12, 0.5, 0.25, 80.0)
+    reply = LiveReply(int(LiveStatus.FOLLOWED), 5, 2.5, (1.0, 2.0, 3.0, 4.0), 1e-12, 0.5, 0.25, 80.0, 2000.0, 1350.0)
     assert decode_reply(encode_reply(reply)) == reply

@@ -142,3 +142,46 @@ def test_a_second_source_is_not_followed(rig: MadeUpRig) -> None:
     settled = replies(rig)[-2000:]
     assert {reply.status for reply in settled} == {LiveStatus.FOLLOWED}
     assert max(reply.lag_deg for reply in settled) < 1.0
+
+
+def test_one_implausible_sample_is_refused_and_told_and_the_flight_goes_on(rig: MadeUpRig) -> None:
+    limit = math.degrees(float(RIG.max_rate.sum()))
+
+    def source(k: int, t: float) -> bytes:
+        if k == 1000:  # a jump, as of a broken packet
+            return turned(k, t, 179.0)
+        if k == 1500:  # a rate that nothing has
+            q, _ = flight(t)
+            return encode_sample(Kind.QUATERNION, k, t, tuple(q), (0.0, 1e6, 0.0))
+        return swing(k, t)
+
+    rig.source = source
+    live(rig)
+    rig.run(3.0)
+    assert rig.state is State.LIVE, rig.codes()
+    assert rig.codes() == ["live_implausible_rate"]
+    (alarm,) = rig.parts.machine.alarms.standing
+    assert (alarm.severity, alarm.unit, alarm.limit, alarm.count) == ("warning", "deg/s", pytest.approx(limit), 1)
+    refused = [reply for reply in replies(rig) if reply.status & LiveStatus.IMPLAUSIBLE]
+    assert [(reply.sequence, reply.status) for reply in refused] == [(k, LiveStatus.IMPLAUSIBLE) for k in (1000, 1500)]
+    assert refused[0].value > 1e5
+    assert refused[1].value == pytest.approx(1e6)
+    assert [reply.limit for reply in refused] == [pytest.approx(limit)] * 2
+    assert all(math.isnan(reply.value) and math.isnan(reply.limit) for reply in replies(rig) if reply not in refused)
+    health = rig.parts.live.health()
+    assert health is not None
+    assert health.implausible == 2
+    rows = rig.rows()
+    assert np.nanmax(rows["solve_error_deg"][-1500:]) <= 1e-9
+    within_limits(rows, rig)
+
+
+def test_a_source_that_is_implausible_for_long_is_lost_and_stops_the_rig_without_a_jump(rig: MadeUpRig) -> None:
+    rig.source = lambda k, t: swing(k, t) if t < 1.0 else turned(k, t, 179.0)
+    live(rig)
+    rig.until(State.ARMED, within_s=5.0)
+    codes = rig.codes()
+    assert codes[0] == "live_implausible_rate"
+    assert "live_source_lost" in codes
+    assert rig.state is State.ARMED
+    within_limits(rig.rows(), rig)

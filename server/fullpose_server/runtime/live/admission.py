@@ -1,0 +1,66 @@
+"""Which samples of a live source are used, and why the others are not."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from fullpose_server.runtime.live.packets import LiveSample, LiveStatus
+
+USED = LiveStatus(0)
+_SOURCE_SILENT_S = 0.5  # then another may be followed in its place
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """`unused`: why a sample is not used, `USED` where it is; `rate`: for which it is refused [rad/s], else nan."""
+
+    unused: LiveStatus = USED
+    rate: float = math.nan
+
+
+class Admission:
+    """Weighs the samples of one rig's live source."""
+
+    def __init__(self, plausible: float) -> None:
+        """plausible: the greatest body rate of a sample that is used [rad/s]."""
+        self.plausible = plausible
+        self.implausible_rate = 0.0  # [rad/s] of the newest sample beyond it
+        self.begin()
+
+    def begin(self) -> None:
+        """Whoever is heard first is followed."""
+        self.strangers = 0  # samples of another source than the one that is followed
+        self.implausible = 0
+        self._source: tuple[int, Any] | None = None  # socket and sender that is followed
+        self._source_at = 0.0  # [s] when it was heard
+
+    def verdict(self, source: tuple[int, Any], rate: float, now: float) -> Verdict:
+        """Of a sample of `source`, which is a socket and a sender, that turns the body at `rate` [rad/s]."""
+        if not self._is_followed(source, now):
+            return Verdict(LiveStatus.DROPPED)
+        if not rate <= self.plausible:
+            self.implausible += 1
+            self.implausible_rate = rate
+            return Verdict(LiveStatus.IMPLAUSIBLE, rate)
+        return Verdict()
+
+    def _is_followed(self, source: tuple[int, Any], now: float) -> bool:
+        """One source a rig: the first to be heard, until it has been silent for a while."""
+        if source != self._source:
+            if self._source is not None and now - self._source_at < _SOURCE_SILENT_S:
+                self.strangers += 1
+                return False
+            self._source = source
+        self._source_at = now
+        return True
+
+
+@dataclass(frozen=True)
+class Taken:
+    """A sample that came at `arrived` [s] by `via` from `sender`, and what became of it."""
+
+    sample: LiveSample
+    verdict: Verdict
+    arrived: float
+    via: Any
+    sender: Any
