@@ -1,5 +1,7 @@
 """The one place that says how kernels are compiled."""
 
+import contextlib
+import warnings
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
@@ -10,6 +12,10 @@ Kernel = TypeVar("Kernel", bound=Callable[..., object])
 Scalar = float | bool | None  # int is a float to the type checker
 Inner = TypeVar("Inner", bound=Callable[..., Scalar | tuple[Scalar, ...]])
 
+NOWHERE = (
+    "neither the package's folder nor the user's cache can be written: every process compiles its kernels anew, which "
+    "takes up to a minute; set NUMBA_CACHE_DIR to a folder that can be"
+)
 BORROW: dict[str, Any] = {"_nrt": False}  # no count of an array's owners; not in Numba's type stubs
 
 
@@ -17,7 +23,7 @@ _FunctionCache: Any = FunctionCache  # Numba's functions have no types
 
 
 class Cache(_FunctionCache):  # type: ignore[misc]
-    """Numba's cache on disk; what cannot be read there is compiled anew, and does not end the program.
+    """Numba's cache on disk; what cannot be read or kept there is compiled anew, and does not end the program.
 
     Numba reads the index before it sees that the index is of an older source: one that names a record which has been
     renamed since, or that was cut short, raises from the first call of the kernel.
@@ -31,10 +37,18 @@ class Cache(_FunctionCache):  # type: ignore[misc]
             self.flush()
             return None
 
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a compiled kernel; where there is no room it is compiled again next time."""
+        with contextlib.suppress(OSError):
+            super().save_overload(sig, data)
+
 
 def _cached(function: Callable[..., object], **options: Any) -> Any:
     compiled = numba.njit(nogil=True, error_model="numpy", **options)(function)
-    compiled._cache = Cache(function)  # noqa: SLF001 - as `cache=True` does; Numba has no other way to give it one
+    try:
+        compiled._cache = Cache(function)  # noqa: SLF001 - as `cache=True` does; Numba has no other way to give it one
+    except RuntimeError:
+        warnings.warn(NOWHERE, RuntimeWarning, stacklevel=3)
     return compiled
 
 

@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import resource
 import sys
 from pathlib import Path
 
@@ -91,6 +92,35 @@ def test_a_cache_that_cannot_be_read_is_made_anew(
         assert hits("Later") == 1
     finally:
         sys.modules.pop("renamed", None)
+
+
+def test_a_kernel_that_there_is_no_room_for_compiles_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+
+    @kernel
+    def tripled(a: float) -> float:
+        return 3.0 * a
+
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
+    try:
+        assert tripled(2.0) == 6.0
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert not [file for file in tmp_path.rglob("*.nbi") if file.stat().st_size]
+
+
+def test_where_nothing_can_be_cached_that_is_said_and_kernels_compile(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("numba.core.caching.CompileResultCacheImpl._locator_classes", [])
+    with pytest.warns(RuntimeWarning, match="set NUMBA_CACHE_DIR"):
+
+        @kernel
+        def doubled(a: float) -> float:
+            return 2.0 * a
+
+    assert doubled(3.0) == 6.0
 
 
 @pytest.mark.parametrize("function", INNER)
