@@ -67,6 +67,7 @@ class Settings(BaseSettings):
     live_max_rate_deg_s: float | None = Field(
         default=None, gt=0.0
     )  # of a sample that is used; None: what the rig can do
+    spare_rig_process: bool = True  # one in reserve: a rig whose process dies is back in a second, not in ten
     stop_rigs_on_exit: bool = True  # at an orderly end; a server that is killed leaves its rigs to be adopted again
 
     @property

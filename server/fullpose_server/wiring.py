@@ -31,6 +31,7 @@ from fullpose_server.runtime.recording.retention import Retention, sweep
 from fullpose_server.runtime.recording.run_index import RunFiles
 from fullpose_server.runtime.supervisor.alarm_watch import AlarmWatch
 from fullpose_server.runtime.supervisor.registry import RigHosts
+from fullpose_server.runtime.supervisor.spare import Spare
 from fullpose_server.scene.on_demand import ScenesOnDemand
 from fullpose_server.scene.scenes import SceneServer
 from fullpose_server.session.alarms import Shelf
@@ -112,7 +113,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
     run_folder.mkdir(exist_ok=True)
     alarms = AlarmHistory(database)
     process_of = _RigProcess(settings, rigs, run_folder, alarms)
-    hosts = RigHosts(rigs, process_of.config, process_of.directory)
+    hosts = RigHosts(rigs, process_of.config, process_of.directory, Spare() if settings.spare_rig_process else None)
 
     def latest(rig: str) -> Any:
         host = hosts.get(rig)

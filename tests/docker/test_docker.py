@@ -65,7 +65,7 @@ def test_everything_copied_exists_and_reaches_the_build() -> None:
         words = [word for word in shlex.split(text) if not word.startswith("--")]
         if "--from=builder" not in text:
             copied += words[:-1]
-    assert {"pyproject.toml", "server/", "solver/", "web/", "docker/warm.py"} <= set(copied)
+    assert {"pyproject.toml", "server/", "solver/", "web/", "docker/warm.py", "docker/init.py"} <= set(copied)
     for path in copied:
         assert (ROOT / path).exists(), path
         assert not ignored(path.rstrip("/")), f"{path} is kept out by .dockerignore"
@@ -114,7 +114,10 @@ def test_base_image_is_an_argument_of_both_stages() -> None:
 
 def test_runs_the_command_that_is_installed_as_a_user_without_rights() -> None:
     entry = json.loads(arguments("ENTRYPOINT")[0])
-    assert entry[0] in PROJECT["project"]["scripts"]
+    assert entry[-1] in PROJECT["project"]["scripts"]
+    copied = [text.split() for text in arguments("COPY")]
+    assert ["docker/init.py", entry[1]] in copied  # the first process, which tests/docker/test_init.py runs
+    assert compose()["services"]["fullpose"]["init"] is False
     assert json.loads(arguments("CMD")[-1]) == ["serve"]
     order = [name for name, _ in instructions()]
     assert order.index("USER") < order.index("ENTRYPOINT")

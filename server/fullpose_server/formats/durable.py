@@ -13,6 +13,17 @@ def sync(path: Path) -> None:
         os.close(descriptor)
 
 
+def write(path: Path, data: bytes) -> None:
+    """A file of these bytes, whole under its name or not at all. Raises OSError; then what was there before stays."""
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        draft.write_bytes(data)
+        rename(draft, path)
+    except OSError:
+        draft.unlink(missing_ok=True)
+        raise
+
+
 def rename(draft: Path, target: Path) -> None:
     """Give a finished file or folder its name: what has the name is whole, with all the files in it."""
     if draft.is_dir():

@@ -166,6 +166,10 @@ class CommandHandler:
                 orders.check_rig(request.args, p.config.rig)
                 try:
                     binding, load = orders.load_of(request.args, p.config.rig, p.motion, p.live)
+                except MemoryError as cause:
+                    raise OrderError(
+                        "out_of_memory", "the rig process has no memory for it: load a shorter one"
+                    ) from cause
                 finally:
                     self._deadlines.restart()
                 return GivenOf(binding, load)

@@ -2,6 +2,7 @@
 
 import math
 import shutil
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -138,6 +139,11 @@ def check_record(runs: Path, min_free_mb: float, recorder_silent_s: float) -> No
         raise OrderError("no_record", f"{runs} cannot be written: {cause.strerror}") from cause
     if free < min_free_mb:
         raise OrderError("disk_full", f"{free:.0f} MB free in {runs}: arming needs {min_free_mb:.0f} MB for the record")
+    try:
+        with tempfile.TemporaryFile(dir=runs):
+            pass  # nothing else tells of a file system that is read only to one whom no rights bind
+    except OSError as cause:
+        raise OrderError("no_record", f"{runs} cannot be written: {cause.strerror}") from cause
 
 
 def check_inside(rig: Rig, motion: Motion) -> None:

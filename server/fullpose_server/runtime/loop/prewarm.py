@@ -1,9 +1,12 @@
 """Compile (or load from the cache) every kernel of the loop before the loop begins."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 
+from fullpose.rig import builtin_rigs
+from fullpose_server.drives import registry
 from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.live.buffer import LiveBuffer
@@ -12,6 +15,14 @@ from fullpose_server.runtime.live.packets import LiveSample
 from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.limit_guard import Guard
 from fullpose_server.session.states import Event
+
+
+def any_rig() -> None:
+    """What every rig needs, before it is known which: imports, and the kernels for a built-in one."""
+    rig = builtin_rigs()["vertical-limited"]
+    config = RigConfig(rig.name, rig, directory=Path(), runs=Path())  # nothing is read or written there
+    registry.make(config.drive, rig, config.rate_hz, config.drive_options)
+    kernels(config)
 
 
 def kernels(config: RigConfig) -> None:

@@ -4,6 +4,7 @@ It is started by the server and outlives it.
 """
 
 import argparse
+import contextlib
 import faulthandler
 import logging
 import os
@@ -39,6 +40,7 @@ from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.limit_guard import Guard
 from fullpose_server.session.machine import SessionMachine
 
+_RECORDER = (sys.executable, "-m", "fullpose_server.runtime.recording.recorder")
 _LOCK_TRIES = 50
 _RECORDER_S = 10.0
 
@@ -46,9 +48,9 @@ _RECORDER_S = 10.0
 class RecorderChild:
     """The recorder as a child of this process."""
 
-    def __init__(self, memory: Path, runs: Path) -> None:
+    def __init__(self, memory: Path, runs: Path, waiting: "WaitingRecorder | None") -> None:
         self._memory, self._runs = memory, runs
-        self._process = start_recorder(memory, runs)
+        self._process = start_recorder(memory, runs) if waiting is None else waiting.begin(memory, runs)
 
     @property
     def ended(self) -> bool:
@@ -61,6 +63,21 @@ class RecorderChild:
             return None
         self._process = start_recorder(self._memory, self._runs)
         return self._process.pid
+
+
+class WaitingRecorder:
+    """A recorder that has begun, and waits to be told what to record."""
+
+    def __init__(self) -> None:
+        self._process = subprocess.Popen([*_RECORDER, "--parent", str(os.getpid())], stdin=subprocess.PIPE)
+
+    def begin(self, memory: Path, runs: Path) -> "subprocess.Popen[bytes]":
+        """Tell it; it is a rig's from here on. One that has ended meanwhile is one that ended: it is started anew."""
+        orders = self._process.stdin
+        if orders is not None:
+            with contextlib.suppress(BrokenPipeError), orders:
+                orders.write(f"{memory}\n{runs}\n".encode())
+        return self._process
 
 
 def assemble(settings: config.RigConfig, drive: Drive, shared: Shared, live: LiveSource, ticks: Clock) -> Parts:
@@ -83,11 +100,25 @@ def assemble(settings: config.RigConfig, drive: Drive, shared: Shared, live: Liv
 def main() -> int:
     """Run one rig until it is told to end; returns the exit status."""
     arguments = argparse.ArgumentParser(description="Runs one rig's loop.")
-    arguments.add_argument("--config", type=Path, required=True)
+    whose = arguments.add_mutually_exclusive_group(required=True)
+    whose.add_argument("--config", type=Path)
+    whose.add_argument("--spare", action="store_true", help="get ready, and read the name of that file from stdin")
     given = arguments.parse_args()
+    if not given.spare:
+        return run(given.config, None)
+    spare = WaitingRecorder()
+    prewarm.any_rig()
+    told = sys.stdin.readline().strip()  # nothing: the server is gone
+    return run(Path(told), spare) if told else 0
+
+
+def run(file: Path, waiting: "WaitingRecorder | None") -> int:
+    """Run the rig whose configuration is in `file`; returns the exit status."""
+    settings = config.decode(file.read_bytes())
+    if waiting is not None:
+        _write_to(RigPaths(settings.directory).log)
     logging.basicConfig(format="%(asctime)s %(message)s", level=logging.INFO)
     log = logging.getLogger("fullpose.rig")
-    settings = config.decode(given.config.read_bytes())
     paths = RigPaths(settings.directory)
     ticks = SystemClock()
     lock = _lock(paths, ticks)
@@ -107,7 +138,7 @@ def main() -> int:
     # A rig is stopped by command; a stray Ctrl-C or hang-up must not drop it in mid-flight.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    recorder = RecorderChild(memory, settings.runs)
+    recorder = RecorderChild(memory, settings.runs, waiting)
     prewarm.kernels(settings)
     _wait_for(recorder, shared, ticks)
     try:
@@ -146,16 +177,16 @@ def _end_at_once(paths: RigPaths, log: logging.Logger) -> None:
 
 def start_recorder(memory: Path, runs: Path) -> "subprocess.Popen[bytes]":
     """Start the recorder as a child of this process."""
-    command = [
-        sys.executable,
-        "-m",
-        "fullpose_server.runtime.recording.recorder",
-        "--memory",
-        str(memory),
-        "--runs",
-        str(runs),
-    ]
-    return subprocess.Popen([*command, "--parent", str(os.getpid())], stdin=subprocess.DEVNULL)
+    command = [*_RECORDER, "--parent", str(os.getpid()), "--memory", str(memory), "--runs", str(runs)]
+    return subprocess.Popen(command, stdin=subprocess.DEVNULL)
+
+
+def _write_to(log: Path) -> None:
+    """What this process writes goes there from now on."""
+    with log.open("ab") as file, Path(os.devnull).open("rb") as nothing:
+        os.dup2(nothing.fileno(), 0)
+        os.dup2(file.fileno(), 1)
+        os.dup2(file.fileno(), 2)
 
 
 def _wait_for(recorder: RecorderChild, shared: Shared, ticks: Clock) -> None:

@@ -11,6 +11,7 @@ import contextlib
 import os
 import shutil
 import signal
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -184,12 +185,16 @@ def _rest(rows: Samples, alarm_ns: int) -> int | None:
 def main() -> None:
     """Record until the parent process ends."""
     arguments = argparse.ArgumentParser(description="Records the runs of one rig.")
-    arguments.add_argument("--memory", type=Path, required=True)
-    arguments.add_argument("--runs", type=Path, required=True)
+    arguments.add_argument("--memory", type=Path, help="with --runs; without: both are read from stdin, a line each")
+    arguments.add_argument("--runs", type=Path)
     arguments.add_argument("--parent", type=int, required=True)
     given = arguments.parse_args()
     os.nice(5)
     os.sched_setaffinity(0, range(os.cpu_count() or 1))  # not where the loop was put, should it start us anew
+    if given.memory is None:
+        given.memory, given.runs = (Path(sys.stdin.readline().strip()) for _ in range(2))
+        if os.getppid() != given.parent:
+            return
     shared = Shared(given.memory)
     shared.header["recorder_pid"] = os.getpid()
     recorder = Recorder(shared, given.runs)

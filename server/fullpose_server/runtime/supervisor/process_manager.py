@@ -26,6 +26,7 @@ from fullpose_server.runtime.supervisor.heartbeat import Heartbeat
 from fullpose_server.runtime.supervisor.launcher import Launcher
 from fullpose_server.runtime.supervisor.process_view import ProcessView
 from fullpose_server.runtime.supervisor.running import RunningProcess, RunningProcesses
+from fullpose_server.runtime.supervisor.spare import Spare
 from fullpose_server.session.states import State
 
 log = logging.getLogger(__name__)
@@ -42,14 +43,20 @@ class ProcessManager:
     """Of one rig. Keeps `view` on the newest process, and `link` to it."""
 
     def __init__(
-        self, config: RigConfig, paths: RigPaths, view: ProcessView, link: StandingLink, running: RunningProcesses
+        self,
+        config: RigConfig,
+        paths: RigPaths,
+        view: ProcessView,
+        link: StandingLink,
+        running: RunningProcesses,
+        spare: Spare | None = None,
     ) -> None:
         self._config = config
         self._paths = paths
         self._view = view
         self._link = link
         self._running = running
-        self._launcher = Launcher(paths)
+        self._launcher = Launcher(paths, spare)
         self._adopted = False
         self._pidfd = -1
         self._respawned: list[float] = []

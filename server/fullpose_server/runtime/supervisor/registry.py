@@ -12,6 +12,7 @@ from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.runtime.supervisor.running import RunningProcesses
+from fullpose_server.runtime.supervisor.spare import Spare
 from fullpose_server.session.states import IN_MOTION
 
 BRAKING_S = 15.0
@@ -21,13 +22,20 @@ log = logging.getLogger(__name__)
 class RigHosts:
     """Hosts by rig name. A rig without a process is disconnected; commanding it or taking its lease starts one."""
 
-    def __init__(self, rigs: RigStore, config: Callable[[str], RigConfig], directory: Callable[[str], Path]) -> None:
+    def __init__(
+        self,
+        rigs: RigStore,
+        config: Callable[[str], RigConfig],
+        directory: Callable[[str], Path],
+        spare: Spare | None = None,
+    ) -> None:
         self._rigs = rigs
         self._config = config
         self._directory = directory
         self._hosts: dict[str, RigHost] = {}
         self._starting: dict[str, asyncio.Task[RigHost]] = {}
         self._appeared = asyncio.Event()
+        self._spare = spare
         self.running = RunningProcesses()
 
     def get(self, rig: str) -> RigHost | None:
@@ -56,7 +64,7 @@ class RigHosts:
         return await asyncio.shield(starting)
 
     async def _start(self, rig: str) -> RigHost:
-        host = RigHost(await asyncio.to_thread(self._config, rig), self.running)
+        host = RigHost(await asyncio.to_thread(self._config, rig), self.running, self._spare)
         await host.start()
         self._hosts[rig] = host
         appeared, self._appeared = self._appeared, asyncio.Event()
@@ -92,6 +100,8 @@ class RigHosts:
             if isinstance(result, BaseException):
                 log.error("a rig did not close", exc_info=result)
         self._hosts.clear()
+        if self._spare is not None:
+            self._spare.close()
 
 
 async def _close(host: RigHost, stop_rig: bool) -> None:

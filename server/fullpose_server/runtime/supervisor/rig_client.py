@@ -17,6 +17,7 @@ from fullpose_server.runtime.supervisor.priority_channel import PriorityChannel
 from fullpose_server.runtime.supervisor.process_manager import REPLY_S, ProcessManager
 from fullpose_server.runtime.supervisor.process_view import ProcessView
 from fullpose_server.runtime.supervisor.running import RunningProcesses
+from fullpose_server.runtime.supervisor.spare import Spare
 from fullpose_server.session.lease import Lease, LeaseAction, LeaseToken
 from fullpose_server.session.states import Command
 
@@ -26,12 +27,13 @@ LOAD_S = 60.0  # a long plan is read and hashed
 class RigHost:
     """One rig, as the server sees it. All methods belong to the event loop's thread; `estop` may come from any."""
 
-    def __init__(self, config: RigConfig, running: RunningProcesses | None = None) -> None:
+    def __init__(self, config: RigConfig, running: RunningProcesses | None = None, spare: Spare | None = None) -> None:
         self.config = config
         self._paths = RigPaths(config.directory)
         self._view = ProcessView(config.name, config.rate_hz)
         self._link = StandingLink(self._paths)
-        self._process = ProcessManager(config, self._paths, self._view, self._link, running or RunningProcesses())
+        running = running or RunningProcesses()
+        self._process = ProcessManager(config, self._paths, self._view, self._link, running, spare)
         self._priority = PriorityChannel(self._view)
 
     @property

@@ -1,0 +1,110 @@
+"""One rig process in reserve: everything imported and every kernel loaded, it waits to be told whose it is.
+
+Those are seconds that a rig whose process died would otherwise wait for. It belongs to the server: it ends when the
+server does, and is a rig's from the moment that it is told.
+"""
+
+import asyncio
+import contextlib
+import logging
+import os
+import signal
+import sys
+from pathlib import Path
+
+import fullpose
+import fullpose_server
+from fullpose_server.runtime.contract.rig_paths import RigPaths
+
+AFTER_S = 5.0  # it is made when the rig that took the last one has long begun
+PROGRAM = "fullpose_server.runtime.loop.process"
+# The process runs the very packages that run here, wherever they were found.
+_ROOTS = [str(Path(*package.__path__).resolve().parent) for package in (fullpose_server, fullpose)]
+log = logging.getLogger(__name__)
+
+
+def spawned(arguments: list[str], stdin: int, output: int | None) -> int:
+    """Start a rig process; returns its pid. `output` is where it writes, None: where we do.
+
+    Spawned, not a `Popen`: a rig process outlives the server that started it, by design, and a `Popen` that is dropped
+    while its process runs takes that for a leak.
+    """
+    paths = [*_ROOTS, *filter(None, [os.environ.get("PYTHONPATH")])]
+    # One BLAS thread: its pool would be locked into memory, and nothing in the loop uses it.
+    env = os.environ | {"PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    files: list[tuple[int, int, int]] = [(os.POSIX_SPAWN_DUP2, stdin, 0)]
+    if output is not None:
+        files += [(os.POSIX_SPAWN_DUP2, output, 1), (os.POSIX_SPAWN_DUP2, output, 2)]
+    return os.posix_spawn(
+        sys.executable,
+        [sys.executable, "-m", PROGRAM, *arguments],
+        env,
+        file_actions=files,
+        setsid=True,  # a Ctrl-C at the server's terminal must not reach a moving rig
+        setsigdef=[signal.SIGPIPE, signal.SIGXFSZ],  # which Python ignores, and an ignored signal is inherited
+    )
+
+
+class Spare:
+    """At most one, for all rigs of a server. Belongs to the event loop's thread."""
+
+    def __init__(self) -> None:
+        self._pid = 0
+        self._orders = -1  # the end of a pipe
+        self._making: asyncio.TimerHandle | None = None
+
+    @property
+    def pid(self) -> int:
+        """Of the one that waits; 0: there is none."""
+        return self._pid
+
+    def make_soon(self) -> None:
+        """Have one, in a while."""
+        if self._making is None and not self._pid:
+            self._making = asyncio.get_running_loop().call_later(AFTER_S, self._make)
+
+    def take(self, paths: RigPaths) -> int:
+        """Make it the process of the rig whose configuration is written in `paths`: its pid; 0 where there is none."""
+        pid, orders = self._pid, self._orders
+        self._pid, self._orders = 0, -1
+        if not pid:
+            return 0
+        try:
+            if os.waitpid(pid, os.WNOHANG)[0]:
+                log.warning("the rig process in reserve had ended")
+                return 0
+            os.write(orders, f"{paths.config}\n".encode())
+        except OSError as cause:
+            log.warning("the rig process in reserve does not take its orders: %s", cause)
+            self._end(pid)
+            return 0
+        finally:
+            os.close(orders)
+        return pid
+
+    def close(self) -> None:
+        """End it."""
+        if self._making is not None:
+            self._making.cancel()
+        if self._pid:
+            os.close(self._orders)
+            self._end(self._pid)
+            self._pid = 0
+
+    def _make(self) -> None:
+        self._making = None
+        theirs, self._orders = os.pipe2(os.O_CLOEXEC)
+        try:
+            self._pid = spawned(["--spare"], theirs, None)
+        except OSError as cause:
+            log.warning("no rig process in reserve: %s", cause)
+            os.close(self._orders)
+        finally:
+            os.close(theirs)
+
+    @staticmethod
+    def _end(pid: int) -> None:
+        """It has begun nothing: nothing is lost."""
+        with contextlib.suppress(ProcessLookupError, ChildProcessError):
+            os.kill(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
