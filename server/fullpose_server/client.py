@@ -111,6 +111,10 @@ class Client:
         """Keep a run whatever its age, or no longer."""
         await self._call("PUT" if pinned else "DELETE", f"/runs/{quote(run)}/pin")
 
+    async def alarms(self, **wanted: Any) -> list[dict[str, Any]]:
+        """The alarm history, newest first; `rig`, `severity`, `code`, `standing`, `to` as GET /alarms has them."""
+        return await self._array("GET", "/alarms", params=wanted)
+
     async def session(self, rig: str) -> dict[str, Any]:
         """The session as of now."""
         return await self._object("GET", f"/rigs/{quote(rig)}/session")

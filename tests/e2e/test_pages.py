@@ -19,6 +19,7 @@ PAGES = {
     "plans": "Plans",
     "compare": "Compare",
     "runs": "Runs",
+    "alarms": "Alarms",
     "rigs": "Rigs",
 }
 

@@ -4,6 +4,11 @@ import type { components, flags, paths } from "./schema";
 type Schemas = components["schemas"];
 
 export type Alarm = Schemas["AlarmOut"];
+/** An alarm of the history of all rigs. */
+export type AlarmRecord = Schemas["AlarmRecordOut"];
+/** Which of them are asked for; null: whatever. */
+export type AlarmQuery = NonNullable<paths["/api/v1/alarms"]["get"]["parameters"]["query"]>;
+export type AuditLine = Schemas["AuditOut"];
 /** A command as it is sent; which ones there are, and what each is given. */
 export type CommandBody = paths["/api/v1/rigs/{rig}/commands"]["post"]["requestBody"]["content"]["application/json"];
 export type CommandName = CommandBody["command"];
@@ -38,6 +43,8 @@ export type Rig = Schemas["RigOut"];
 export type Run = Schemas["RunOut"];
 export type ScenePoseAt = Schemas["ScenePoseIn"];
 export type ScenePose = Schemas["ScenePoseOut"];
+export type Severity = Schemas["Severity"];
+export type Shelf = Schemas["ShelfOut"];
 export type Snapshot = Schemas["SessionOut"];
 export type StateName = Schemas["State"];
 export type Trajectory = Schemas["TrajectoryOut"];

@@ -1,5 +1,6 @@
 /** The REST API: one function a request. Paths, parameters, bodies and answers are those of the generated contract. */
 import type {
+  AlarmQuery,
   ArgsOf,
   CommandBody,
   CommandName,
@@ -9,7 +10,7 @@ import type {
   RemedyKind,
   ScenePoseAt,
 } from "../contract/types";
-import { pathTo, request, socketTo } from "./request";
+import { page, pathTo, request, socketTo } from "./request";
 import { upload } from "./upload";
 
 /** How long an answer may take: to a Stop, to a command or the lease, and to what is read or begun. */
@@ -24,13 +25,13 @@ export const api = {
   rigs: () => request("get", "/api/v1/rigs", {}, READ),
   methods: () => request("get", "/api/v1/methods", {}, READ),
 
-  trajectories: () => request("get", "/api/v1/trajectories", {}, READ),
+  trajectories: (before: string | null = null) => page("/api/v1/trajectories", {}, {}, before, READ.withinMs),
   preview: (sha256: string, points = 800) =>
     request("get", "/api/v1/trajectories/{sha256}/preview", { sha256 }, { ...READ, query: { points } }),
   deleteTrajectory: (sha256: string) => request("delete", "/api/v1/trajectories/{sha256}", { sha256 }, READ),
   upload,
 
-  plans: () => request("get", "/api/v1/plans", {}, READ),
+  plans: (before: string | null = null) => page("/api/v1/plans", {}, {}, before, READ.withinMs),
   plan: (plan: string) => request("get", "/api/v1/plans/{plan}", { plan }, READ),
   planSamples: (plan: string, points = 1200) =>
     request("get", "/api/v1/plans/{plan}/samples", { plan }, { ...READ, query: { points } }),
@@ -40,7 +41,7 @@ export const api = {
     request("post", "/api/v1/plans/{plan}/remedies", { plan }, { ...READ, body: { kind } }),
   cancelPlan: (plan: string) => request("delete", "/api/v1/plans/{plan}", { plan }, READ),
 
-  comparisons: () => request("get", "/api/v1/compare", {}, READ),
+  comparisons: (before: string | null = null) => page("/api/v1/compare", {}, {}, before, READ.withinMs),
   comparison: (comparison: string) => request("get", "/api/v1/compare/{comparison}", { comparison }, READ),
   createComparison: (trajectory: string, rig: string, methods: string[]) =>
     request("post", "/api/v1/compare", {}, { ...READ, body: { trajectory, rig, methods } }),
@@ -63,9 +64,16 @@ export const api = {
   stop: (rig: string) => request("post", "/api/v1/rigs/{rig}/stop", { rig }, STOP),
   estop: (rig: string) => request("post", "/api/v1/rigs/{rig}/estop", { rig }, STOP),
 
-  runs: () => request("get", "/api/v1/runs", {}, READ),
+  runs: (before: string | null = null) => page("/api/v1/runs", {}, {}, before, READ.withinMs),
   run: (run: string) => request("get", "/api/v1/runs/{run}", { run }, READ),
+  deleteRun: (run: string) => request("delete", "/api/v1/runs/{run}", { run }, READ),
+  pinRun: (run: string) => request("put", "/api/v1/runs/{run}/pin", { run }, READ),
+  unpinRun: (run: string) => request("delete", "/api/v1/runs/{run}/pin", { run }, READ),
   exportUrl: (run: string, format: ExportFormat) => pathTo("/api/v1/runs/{run}/export", { run }, { format }),
+
+  alarms: (wanted: AlarmQuery, before: string | null = null) =>
+    page("/api/v1/alarms", {}, wanted, before, READ.withinMs),
+  audit: (before: string | null = null) => page("/api/v1/audit", {}, {}, before, READ.withinMs),
 
   /** Shows a plan's pose as a ghost beside the rig; null takes it away, also from a page that is being left. */
   scenePose: (rig: string, body: ScenePoseAt | null) =>

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { pathTo, request, socketTo } from "./request";
+import { cursorOf, pathTo, request, socketTo } from "./request";
 
 it("fills a path in, whatever a name holds", () => {
   expect(pathTo("/api/v1/plans/{plan}", { plan: "a b/c" })).toBe("/api/v1/plans/a%20b%2Fc");
@@ -28,4 +28,13 @@ it("does not compile what the contract does not know", () => {
     () => socketTo("/api/v1/plans", {}),
   ];
   expect(refused).toHaveLength(8);
+});
+
+it("leaves out of a query what is not asked for, and finds where the next page begins", () => {
+  expect(pathTo("/api/v1/alarms", {}, { rig: "a b", code: null, standing: false })).toBe(
+    "/api/v1/alarms?rig=a+b&standing=false",
+  );
+  expect(cursorOf('</api/v1/alarms?before=1.5~a-1&limit=100>; rel="next"')).toBe("1.5~a-1");
+  expect(cursorOf('</api/v1/alarms?limit=100>; rel="prev"')).toBeNull();
+  expect(cursorOf(null)).toBeNull();
 });

@@ -3,7 +3,7 @@ import type { paths, sockets } from "../contract/schema";
 import { ApiError, refusal, silence } from "./errors";
 import { CLIENT_HEADER, me } from "./identity";
 
-type Verb = "get" | "post" | "delete";
+type Verb = "get" | "post" | "put" | "delete";
 type Successes = 200 | 201 | 202 | 204;
 
 /** The paths that have this verb. */
@@ -15,6 +15,7 @@ type Answers<R> = { [Status in keyof R & Successes]: JsonOf<R[Status]> }[keyof R
 type AnswerOf<Path extends keyof paths, V extends Verb> = paths[Path][V] extends { responses: infer R }
   ? Answers<R>
   : never;
+type RowOf<Rows> = Rows extends readonly (infer Row)[] ? Row : never;
 type BodyOf<Path extends keyof paths, V extends Verb> = paths[Path][V] extends { requestBody?: infer B }
   ? JsonOf<B>
   : undefined;
@@ -37,7 +38,9 @@ export function pathTo<Path extends keyof (paths & sockets)>(
 ): string {
   const values = named as Record<string, string>;
   const filled = path.replace(/\{(\w+)\}/g, (_, name: string) => encodeURIComponent(values[name] ?? ""));
-  const asked = new URLSearchParams(Object.entries(query ?? {}).map(([key, value]) => [key, String(value)]));
+  // What is null is not asked for.
+  const given = Object.entries(query ?? {}).filter(([, value]) => value !== null && value !== undefined);
+  const asked = new URLSearchParams(given.map(([key, value]) => [key, String(value)]));
   return asked.size > 0 ? `${filled}?${asked}` : filled;
 }
 
@@ -63,7 +66,41 @@ export async function request<V extends Verb, Path extends PathOf<V>>(
   named: Named<Path>,
   sending: Sending<BodyOf<Path, V>, QueryOf<Path>>,
 ): Promise<AnswerOf<Path, V>> {
-  const { body, withinMs, keepalive = false }: Sending<unknown, unknown> = sending;
+  const { text } = await sent(verb, pathTo(path, named, sending.query), sending);
+  return (text === "" ? undefined : JSON.parse(text)) as AnswerOf<Path, V>;
+}
+
+/** A part of a list, the newest rows first. */
+export interface Page<Row> {
+  readonly rows: readonly Row[];
+  /** Where the next page begins; null where there is none. */
+  readonly next: string | null;
+}
+
+/** A page of a list, the rows after `before`, and where the next one begins. Raises as `request` does. */
+export async function page<Path extends PathOf<"get">>(
+  path: Path,
+  named: Named<Path>,
+  wanted: Omit<NonNullable<QueryOf<Path>>, "before" | "limit">,
+  before: string | null,
+  withinMs: number,
+): Promise<Page<RowOf<AnswerOf<Path, "get">>>> {
+  const query = { ...wanted, before } as QueryOf<Path>;
+  const { text, link } = await sent("get", pathTo(path, named, query), { withinMs });
+  return { rows: JSON.parse(text) as RowOf<AnswerOf<Path, "get">>[], next: cursorOf(link) };
+}
+
+/** Where the next page begins, of a `Link` header (RFC 8288). */
+export function cursorOf(link: string | null): string | null {
+  const next = /<([^>]*)>;\s*rel="next"/.exec(link ?? "")?.[1];
+  return next === undefined ? null : new URLSearchParams(next.split("?")[1]).get("before");
+}
+
+async function sent(
+  verb: Verb,
+  url: string,
+  { body, withinMs, keepalive = false }: Omit<Sending<unknown, unknown>, "query">,
+): Promise<{ text: string; link: string | null }> {
   const headers: Record<string, string> = { [CLIENT_HEADER]: me() };
   const init: RequestInit = { method: verb.toUpperCase(), keepalive, headers, signal: AbortSignal.timeout(withinMs) };
   if (body !== undefined) {
@@ -73,7 +110,7 @@ export async function request<V extends Verb, Path extends PathOf<V>>(
   let response: Response;
   let text: string;
   try {
-    response = await fetch(pathTo(path, named, sending.query), init);
+    response = await fetch(url, init);
     text = await response.text();
   } catch (error) {
     if (error instanceof DOMException && error.name === "TimeoutError") {
@@ -82,5 +119,5 @@ export async function request<V extends Verb, Path extends PathOf<V>>(
     throw silence();
   }
   if (!response.ok) throw refusal(response.status, text);
-  return (text === "" ? undefined : JSON.parse(text)) as AnswerOf<Path, V>;
+  return { text, link: response.headers.get("link") };
 }

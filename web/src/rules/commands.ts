@@ -49,13 +49,17 @@ export type Verdict = { enabled: true } | { enabled: false; why: string };
 
 const no = (why: string): Verdict => ({ enabled: false, why });
 
+/** Those without a button in the bar that move nothing. */
+const QUIET: ReadonlySet<CommandName> = new Set<CommandName>(["shelve", "unshelve"]);
+
 /** Whether `command` may be given. Stop and E-stop always may: no lease, no fresh data, no link state is asked for. */
 export function verdict(command: CommandName, now: Circumstances): Verdict {
   if (command === "stop" || command === "estop") return { enabled: true };
   if (now.state === null) return no("No word from the rig yet");
   if (!now.allowed.includes(command)) return no(`Not allowed while ${now.state}`);
   const look = COMMANDS.find(({ name }) => name === command);
-  if ((look?.motion ?? true) && now.freshness === "stale") return no("Data is stale: motion is disabled");
+  if ((look?.motion ?? !QUIET.has(command)) && now.freshness === "stale")
+    return no("Data is stale: motion is disabled");
   if (!now.leased) return no("Take control first");
   if (command === "load" && !now.plan) return no("Choose a plan first");
   if (command === "acknowledge" && now.unacknowledged === 0) return no("No alarm waits");

@@ -60,3 +60,8 @@ export function clockTime(seconds: number): string {
 export function dateTime(written: string, seconds = false): string {
   return new Date(written).toLocaleString([], { dateStyle: "medium", timeStyle: seconds ? "medium" : "short" });
 }
+
+/** Date and time here, of seconds since 1970. */
+export function dateTimeOf(seconds: number): string {
+  return new Date(seconds * 1000).toLocaleString([], { dateStyle: "medium", timeStyle: "medium", hour12: false });
+}

@@ -1,6 +1,6 @@
-/** Paths of the pages: /operate/{rig}, /trajectories/{sha}, /plans/{id}, /compare/{id}, /runs/{id}, /rigs. */
+/** Paths of the pages: /operate/{rig}, /trajectories/{sha}, /plans/{id}, /compare/{id}, /runs/{id}, /alarms, /rigs. */
 
-export const PAGES = ["operate", "trajectories", "plans", "compare", "runs", "rigs"] as const;
+export const PAGES = ["operate", "trajectories", "plans", "compare", "runs", "alarms", "rigs"] as const;
 export type Page = (typeof PAGES)[number];
 
 export interface Route {

@@ -2,12 +2,16 @@
 import type { Plan } from "../contract/types";
 import { ApiError, messageOf } from "../net/errors";
 import { backoffMs } from "../net/keptSocket";
+import type { Page } from "../net/request";
+import { extended, renewed } from "../rules/pages";
+import type { Older } from "./pages.svelte";
 
 export interface Job {
   id: string;
   status: string;
 }
 
+const idOf = (job: Job): string => job.id;
 const POLL_MS = 250;
 const UNFINISHED: ReadonlySet<string> = new Set<Plan["status"]>(["queued", "running"]);
 
@@ -15,8 +19,11 @@ export const unfinished = (job: Pick<Job, "status">): boolean => UNFINISHED.has(
 
 const passing = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 
-export class Jobs<J extends Job> {
-  all: J[] = $state.raw([]);
+export class Jobs<J extends Job> implements Older {
+  all: readonly J[] = $state.raw([]);
+  /** Where the next page of the list begins; null where there is none. */
+  next: string | null = $state(null);
+  reading = $state(false);
   /** What kept the list or a job from being read the last time; null once it has been. */
   problem: string | null = $state(null);
 
@@ -25,7 +32,7 @@ export class Jobs<J extends Job> {
   #added = 0;
 
   constructor(
-    private readonly list: () => Promise<J[]>,
+    private readonly list: (before: string | null) => Promise<Page<J>>,
     private readonly get: (id: string) => Promise<J>,
     private readonly wait: (ms: number) => Promise<void> = passing,
   ) {}
@@ -34,19 +41,35 @@ export class Jobs<J extends Job> {
     const read = ++this.#reads;
     try {
       let added: number;
-      let all: J[];
+      let newest: Page<J>;
       do {
         added = this.#added;
-        all = await this.list();
+        newest = await this.list(null);
       } while (added !== this.#added); // a list that was asked for before a job was made does not hold it
       if (read !== this.#reads) return; // asked for anew meanwhile: that answer is the newer one
-      this.all = all;
+      this.#take(renewed(newest, { rows: this.all, next: this.next }, idOf));
       this.problem = null;
       void this.#poll();
     } catch (error) {
       if (read === this.#reads) this.problem = messageOf(error);
     }
   }
+
+  /** Reads the next page of the list, where there is one. */
+  more = async (): Promise<void> => {
+    if (this.next === null || this.reading) return;
+    this.reading = true;
+    try {
+      const older = await this.list(this.next);
+      this.#take(extended({ rows: this.all, next: this.next }, older, idOf));
+      this.problem = null;
+      void this.#poll();
+    } catch (error) {
+      this.problem = messageOf(error);
+    } finally {
+      this.reading = false;
+    }
+  };
 
   /** Reads one job in full. Raises what the request raises. */
   async read(id: string): Promise<void> {
@@ -61,6 +84,11 @@ export class Jobs<J extends Job> {
       this.all = [job, ...this.all];
     }
     void this.#poll();
+  }
+
+  #take(known: Page<J>): void {
+    this.all = known.rows;
+    this.next = known.next;
   }
 
   #replace(job: J): void {

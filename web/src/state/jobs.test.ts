@@ -11,7 +11,7 @@ class World {
   #next: (() => void) | null = null;
 
   readonly jobs = new Jobs<Job>(
-    () => Promise.resolve(this.listed),
+    async () => ({ rows: await this.listed, next: null }),
     () => {
       this.asked++;
       const answer = this.answers.shift() ?? new Error("asked once too often");

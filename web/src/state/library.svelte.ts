@@ -4,20 +4,20 @@ import type { Api } from "../net/api";
 import { messageOf } from "../net/errors";
 import { backoffMs } from "../net/keptSocket";
 import { Jobs } from "./jobs.svelte";
+import { Pages } from "./pages.svelte";
 
 export class Library {
   rigs: Rig[] = $state.raw([]);
-  trajectories: Trajectory[] = $state.raw([]);
   methods: Method[] = $state.raw([]);
-  /** Null until first read: a long record takes a while to be summed up. */
-  runs: Run[] | null = $state.raw(null);
   health: Health | null = $state.raw(null);
   /** Flight and plan the operator works with. */
   trajectory: string | null = $state(null);
   plan: string | null = $state(null);
   uploading: { name: string; fraction: number } | null = $state(null);
 
-  readonly #plans: Jobs<Plan>;
+  readonly flights: Pages<Trajectory>;
+  readonly records: Pages<Run>;
+  readonly planning: Jobs<Plan>;
   readonly comparisons: Jobs<Comparison>;
 
   /** What could not be read, by what it is. */
@@ -28,6 +28,9 @@ export class Library {
 
   /** Why what is shown may not be what the server has; null where all of it was read. */
   readonly problem: string | null;
+  readonly trajectories: readonly Trajectory[];
+  /** Null until first read: a long record takes a while to be summed up. */
+  readonly runs: readonly Run[] | null;
   readonly plans: readonly Plan[];
   readonly chosenTrajectory: Trajectory | null;
   readonly chosenPlan: Plan | null;
@@ -35,10 +38,18 @@ export class Library {
   constructor(private readonly api: Api) {
     const plans = new Jobs<Plan>(api.plans, api.plan);
     const comparisons = new Jobs<Comparison>(api.comparisons, api.comparison);
-    this.#plans = plans;
+    const flights = new Pages<Trajectory>(api.trajectories, ({ sha256 }) => sha256);
+    const records = new Pages<Run>(api.runs, ({ id }) => id);
+    this.planning = plans;
+    this.flights = flights;
+    this.records = records;
     this.comparisons = comparisons;
     this.plans = $derived(plans.all);
-    this.problem = $derived(Object.values(this.#problems)[0] ?? plans.problem ?? comparisons.problem);
+    this.trajectories = $derived(flights.rows ?? []);
+    this.runs = $derived(records.rows);
+    this.problem = $derived(
+      Object.values(this.#problems)[0] ?? flights.problem ?? records.problem ?? plans.problem ?? comparisons.problem,
+    );
     this.chosenTrajectory = $derived(this.trajectories.find(({ sha256 }) => sha256 === this.trajectory) ?? null);
     this.chosenPlan = $derived(plans.all.find(({ id }) => id === this.plan) ?? null);
   }
@@ -49,10 +60,10 @@ export class Library {
     await Promise.all([
       this.refreshRigs(),
       this.#read("methods", this.api.methods, (methods) => (this.methods = methods)),
-      this.#read("health", this.api.health, (health) => (this.health = health)),
-      this.refreshTrajectories(),
-      this.#plans.refresh(),
-      ...(this.#problems["runs"] === undefined ? [] : [this.refreshRuns()]),
+      this.refreshHealth(),
+      this.flights.refresh(),
+      this.planning.refresh(),
+      ...(this.records.problem === null ? [] : [this.records.refresh()]),
       ...(this.comparisons.problem === null ? [] : [this.comparisons.refresh()]),
     ]);
     this.#misses = this.problem === null ? 0 : this.#misses + 1;
@@ -62,9 +73,7 @@ export class Library {
   }
 
   refreshRigs = (): Promise<void> => this.#read("rigs", this.api.rigs, (rigs) => (this.rigs = rigs));
-  refreshTrajectories = (): Promise<void> =>
-    this.#read("trajectories", this.api.trajectories, (trajectories) => (this.trajectories = trajectories));
-  refreshRuns = (): Promise<void> => this.#read("runs", this.api.runs, (runs) => (this.runs = runs));
+  refreshHealth = (): Promise<void> => this.#read("health", this.api.health, (health) => (this.health = health));
 
   /** What the operator works with from now on. */
   chooseTrajectory(sha256: string | null): void {
@@ -78,7 +87,20 @@ export class Library {
   async deleteTrajectory(sha256: string): Promise<void> {
     await this.api.deleteTrajectory(sha256);
     if (this.trajectory === sha256) this.trajectory = null;
-    await this.refreshTrajectories();
+    this.flights.drop(sha256);
+    await this.flights.refresh();
+  }
+
+  async deleteRun(id: string): Promise<void> {
+    await this.api.deleteRun(id);
+    this.records.drop(id);
+    await this.records.refresh();
+  }
+
+  /** Keeps a run whatever its age, or no longer. */
+  async pinRun(id: string, pinned: boolean): Promise<void> {
+    await (pinned ? this.api.pinRun(id) : this.api.unpinRun(id));
+    this.records.put(await this.api.run(id));
   }
 
   async upload(file: File, convention: Convention): Promise<Trajectory> {
@@ -89,7 +111,7 @@ export class Library {
         convention,
         (fraction) => (this.uploading = { name: file.name, fraction }),
       );
-      await this.refreshTrajectories();
+      await this.flights.refresh();
       this.trajectory = stored.sha256;
       this.plan = null;
       return stored;
@@ -100,19 +122,19 @@ export class Library {
 
   async createPlan(trajectory: string, rig: string, method: string): Promise<Plan> {
     const plan = await this.api.createPlan(trajectory, rig, method);
-    this.#plans.put(plan);
+    this.planning.put(plan);
     this.plan = plan.id;
     return plan;
   }
 
   /** Searches a remedy: a plan of its own, which is not what the operator works with before it is chosen. */
   async createRemedy(plan: string, kind: RemedyKind): Promise<void> {
-    this.#plans.put(await this.api.createRemedy(plan, kind));
+    this.planning.put(await this.api.createRemedy(plan, kind));
   }
 
   async cancelPlan(id: string): Promise<void> {
     await this.api.cancelPlan(id);
-    await this.#plans.refresh();
+    await this.planning.refresh();
   }
 
   async compare(trajectory: string, rig: string, methods: string[]): Promise<Comparison> {

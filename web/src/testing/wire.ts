@@ -1,5 +1,5 @@
 /** Messages as the server sends them, for tests: whole, and ordinary in all that a test does not say. */
-import type { Alarm, Lease, LeaseGiven, Rig, Snapshot, Trajectory } from "../contract/types";
+import type { Alarm, Lease, LeaseGiven, Rig, Run, Snapshot, Trajectory } from "../contract/types";
 import { me } from "../net/identity";
 
 export function leaseOf(holder: string | null, given: Partial<Lease> = {}): Lease {
@@ -93,3 +93,27 @@ export const FLIGHT: Trajectory = {
   source_sha256: "s",
   warnings: [],
 };
+
+export function runOf(given: Partial<Run> = {}): Run {
+  return {
+    id: "r1",
+    rig: "bench",
+    incident: null,
+    error: null,
+    plan_id: "p",
+    plan_hash: "h",
+    who: "ann",
+    started_at: "2026-11-01T12:00:00Z",
+    ended_at: "2026-11-01T12:00:10Z",
+    duration_s: 10,
+    samples: 10_000,
+    lost_samples: 0,
+    bytes: 1000,
+    pinned: false,
+    complete: true,
+    max_solve_error_deg: 1e-12,
+    max_tracking_error_deg: 0.1,
+    max_lateness_us: 50,
+    ...given,
+  };
+}

@@ -11,7 +11,7 @@ const choose = (...files: File[]) => fireEvent.change(screen.getByLabelText("Fli
 
 describe("a flight", () => {
   it("is sent, and how much of it has been is told", async () => {
-    const console = new TestConsole({ trajectories: [FLIGHT] });
+    const console = new TestConsole({ trajectories: { rows: [FLIGHT], next: null } });
     console.show(DropZone, {});
     await choose(file);
     const [what, sent, convention, progress] = console.asked.at(-1) ?? [];
@@ -22,7 +22,7 @@ describe("a flight", () => {
 
   it("that is stored is chosen, and what was found in it is said", async () => {
     const stored = { ...FLIGHT, warnings: [{ code: "gap", message: "a gap of 0.2 s" }] };
-    const console = new TestConsole({ trajectories: [stored], upload: stored });
+    const console = new TestConsole({ trajectories: { rows: [stored], next: null }, upload: stored });
     console.show(DropZone, {});
     await choose(file);
     await expect.poll(() => console.stores.notices.all).toMatchObject([{ text: "loop: a gap of 0.2 s" }]);
