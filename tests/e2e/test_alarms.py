@@ -78,6 +78,9 @@ def test_alarms_are_seen_and_acknowledged_and_shelves_taken_away(pages: Pages, s
     page.set_viewport_size(PHONE)
     for name in ("Commands", "Server", "Shelves", "Alarms"):
         tab(page, name)
-        assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"], name
         page.screenshot(path=shots / f"alarms-{name.lower()}-phone.png")
+        assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"], name
         assert page.evaluate(CUT_TABLES) == [], name
+    box = page.get_by_role("button", name="E-stop").bounding_box()
+    assert box is not None
+    assert box["x"] + box["width"] <= PHONE["width"]

@@ -4,7 +4,7 @@ import { tick } from "svelte";
 import { beforeEach, describe, expect, it } from "vitest";
 import type { AlarmRecord } from "../../contract/types";
 import { TestConsole } from "../../testing/console";
-import { alarm, ourLease, session } from "../../testing/wire";
+import { alarm, givenLease, ourLease, session } from "../../testing/wire";
 import Alarms from "./Alarms.svelte";
 
 beforeEach(() => sessionStorage.clear());
@@ -24,7 +24,7 @@ function record(given: Partial<AlarmRecord> = {}): AlarmRecord {
 const page = (rows: AlarmRecord[], next: string | null = null): object => ({ alarms: { rows, next } });
 
 async function inControl(answers: object, given: Parameters<typeof session>[0] = {}): Promise<TestConsole> {
-  const console = new TestConsole({ lease: ourLease(), command: {}, ...answers });
+  const console = new TestConsole({ lease: givenLease(ourLease()), command: {}, ...answers });
   console.operate(session({ lease: ourLease(), allowed: ALLOWED, ...given }));
   await console.stores.operated.lease.take();
   console.show(Alarms, {});
@@ -57,7 +57,9 @@ describe("the history", () => {
     const console = await inControl(page([record({ number: 7 })]), { alarms: [alarm({ number: 7 })] });
     await history();
     await fireEvent.click(screen.getByRole("button", { name: "Acknowledge" }));
-    expect(asked(console, "command")).toEqual([["bench", "acknowledge", { numbers: [7] }, { epoch: 3, sequence: 1 }]]);
+    expect(asked(console, "command")).toEqual([
+      ["bench", "acknowledge", { numbers: [7] }, { epoch: 3, sequence: 1, secret: "a-secret" }],
+    ]);
   });
 
   it("leads to the rig whose alarm it is, where that is another", async () => {
