@@ -114,6 +114,8 @@ export function runOf(given: Partial<Run> = {}): Run {
     max_solve_error_deg: 1e-12,
     max_tracking_error_deg: 0.1,
     max_lateness_us: 50,
+    end: "completed",
+    end_code: null,
     ...given,
   };
 }
