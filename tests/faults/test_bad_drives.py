@@ -144,17 +144,25 @@ def test_a_drive_that_keeps_the_interpreter_s_lock_is_named_by_the_server_and_ki
     asyncio.run(fly())
 
 
+@pytest.mark.parametrize(
+    ("fault", "error", "call"),
+    [
+        ("raises", "OSError: [Errno 5] the card has gone", "read"),
+        ("raises", "OSError: [Errno 5] the card has gone", "write"),
+        ("exhausts", "MemoryError: ", "read"),
+    ],
+)
 def test_a_call_that_raises_is_named_with_its_time_and_its_traceback_is_in_the_log(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str, error: str, call: str
 ) -> None:
     async def fly() -> None:
-        bad = Bad(tmp_path, monkeypatch, "raises", "read")
+        bad = Bad(tmp_path, monkeypatch, fault, call)
         async with hosted(bad.config) as (host, operator):
             await bad.fly(operator)
             pid = host.snapshot().health.rig_pid
             bad.trigger.touch()
             alarm = await named(host, "drive_failed")
-            assert "drive bad: read raised OSError: [Errno 5] the card has gone (after" in alarm.message
+            assert f"drive bad: {call} raised {error} (after" in alarm.message
             assert alarm.unit == "ms"
             assert alarm.first
             assert host.snapshot().state == "faulted"
@@ -162,7 +170,7 @@ def test_a_call_that_raises_is_named_with_its_time_and_its_traceback_is_in_the_l
             await operator.recover()
             assert host.snapshot().health.rig_pid == pid
         assert "Traceback" in bad.log()
-        assert "in _raise" in bad.log()
+        assert f"in _{fault.removesuffix('s')}" in bad.log()
 
     asyncio.run(fly())
 

@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import os
 import resource
+import signal
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.fullpose_server.runtime.rigs import codes_of, config_of, hosted, plan_of, within_limits, written
+from tests.support.waiting import soon
 
 
 @contextlib.contextmanager
@@ -49,6 +51,22 @@ def test_a_plan_for_which_there_is_no_memory_is_refused_and_the_process_lives(tm
             assert snapshot.health.rig_pid == pid
             assert codes_of(snapshot.alarms) == []
             within_limits(host.samples(0, 1 << 20)[0], host)
+
+    asyncio.run(fly())
+
+
+def test_a_rig_s_folder_that_may_not_be_written_is_said_and_its_process_is_back_when_it_may(tmp_path: Path) -> None:
+    async def fly() -> None:
+        async with hosted(config_of(tmp_path)) as (host, _):
+            pid = host.snapshot().health.rig_pid
+            assert host.faults() == []
+            with read_only(host.config.directory):
+                os.kill(pid, signal.SIGKILL)
+                (said,) = await soon(host.faults)
+                assert "its process cannot be started" in said
+                assert "Read-only file system" in said
+            await soon(lambda: host.snapshot().health.rig_pid != pid and host.snapshot().health.rig_alive)
+            await soon(lambda: not host.faults())
 
     asyncio.run(fly())
 

@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import httpx
 import numpy as np
 import pytest
 
@@ -18,6 +19,8 @@ from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.session.machine import SilencePolicy
 from tests.faults.records import messages
 from tests.fullpose_server.runtime.rigs import Operator, config_of, plan_of, within_limits, written
+from tests.support.repository import PYTHONPATH
+from tests.support.serving import start
 
 CAMPAIGN = "FAULT_ROUNDS" in os.environ
 MOMENTS = int(os.environ.get("FAULT_ROUNDS", "3"))
@@ -122,3 +125,26 @@ def test_a_server_that_stays_away_means_a_stop_and_in_the_end_the_process_leaves
     assert not RigPaths(config.directory).memory().exists()
     numbers = messages(next(iter((tmp_path / "runs").iterdir())))
     assert (np.diff(numbers) == 1).all()
+
+
+# In a gate's process: as long over its imports as on a starved machine.
+SLOW_GATE = """
+import sys, time
+if "fullpose_server.gate.process" in " ".join(sys.orig_argv):
+    time.sleep(9.0)
+"""
+
+
+def test_a_stop_gate_that_takes_long_to_begin_is_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "sitecustomize.py").write_text(SLOW_GATE)
+    paths = [str(tmp_path / "site"), *filter(None, [os.environ.get("PYTHONPATH")]), PYTHONPATH]
+    served = start("serve", "--port", "0", "--data-dir", tmp_path / "data", PYTHONPATH=os.pathsep.join(paths))
+    try:
+        assert served.stdout is not None
+        url = served.stdout.readline().strip()
+        assert httpx.get(f"{url}/api/v1/rigs", timeout=120.0).is_success
+    finally:
+        served.send_signal(signal.SIGINT)
+        _, said = served.communicate(timeout=60)
+    assert "started anew" not in said

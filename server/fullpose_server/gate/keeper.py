@@ -18,6 +18,7 @@ from fullpose_server.runtime.supervisor.running import RunningProcess, RunningPr
 from fullpose_server.store.audit_trail import AuditTrail
 
 RETRY_S = 0.5
+START_S = 180.0  # for it to begin: a starved machine takes long over the imports, and to begin anew takes as long
 SILENT_S = 5.0  # a gate that tells nothing for so long serves nobody: it tells at least every `gate.process.SWEEP_S`
 _AT_ONCE = 64  # messages; then the event loop has its turn
 _END_S = 5.0
@@ -83,6 +84,7 @@ class Keeper:
         self._ending = False
         self._gate = gate
         self._heard = time.monotonic()
+        self._begun = False  # it has told something
         running.watch(self._changed)
         self._begin()
         self._watch = asyncio.create_task(self._watch_on(), name="watch the stop gate")
@@ -103,7 +105,7 @@ class Keeper:
     # --- the gate's life ---
 
     def _begin(self) -> None:
-        self._heard = time.monotonic()
+        self._heard, self._begun = time.monotonic(), False
         self._loop.add_reader(self._gate.link, self._hear, self._gate)
         for process in self._running.all():
             self._changed(process.rig, process)
@@ -114,9 +116,10 @@ class Keeper:
         silent = False  # seen so once before: a server that was itself suspended reads first what has come meanwhile
         while True:
             await asyncio.sleep(RETRY_S)
-            before, silent = silent, time.monotonic() - self._heard > SILENT_S
+            patience_s = SILENT_S if self._begun else START_S
+            before, silent = silent, time.monotonic() - self._heard > patience_s
             if before and silent and self._status.down_since is None:
-                self._lost(f"it has told nothing for {SILENT_S:g} s")
+                self._lost(f"it has told nothing for {patience_s:g} s")
             if self._status.down_since is not None:
                 await asyncio.to_thread(self._gate.end)
                 self._gate = GateProcess.spawn(self._listener, self._gate.log)
@@ -156,7 +159,7 @@ class Keeper:
                 continue
             except OSError:
                 message = None
-            self._heard = time.monotonic()
+            self._heard, self._begun = time.monotonic(), True
             match message:
                 case messages.Passed():
                     self._serve(message)

@@ -62,6 +62,7 @@ class ProcessManager:
         self._respawned: list[float] = []
         self._hung = Hung(_HUNG_LOOKS, _PATIENT_LOOKS)
         self._killed = ""  # why, where we did it
+        self._refused = ""  # why no other could be started in its place
         self._watch: asyncio.Task[None] | None = None
         self._heartbeat: Heartbeat | None = None
 
@@ -73,6 +74,8 @@ class ProcessManager:
     def faults(self) -> list[str]:
         """What of the supervision itself has failed; nothing while all is well."""
         found = []
+        if self._refused:
+            found.append(f"its process cannot be started: {self._refused}")
         if self._watch is not None and self._watch.done():
             found.append("its process is not watched any more")
         if self._heartbeat is not None and not self._heartbeat.alive:
@@ -179,6 +182,7 @@ class ProcessManager:
             try:
                 await self._revive()
             except (HostError, OSError) as cause:
+                self._refused = str(cause)
                 log.warning("rig %s is not started anew: %s", self._config.name, cause)
                 await asyncio.to_thread(_append, self._paths.log, f"server: {cause}\n")
                 await asyncio.sleep(_RETRY_S)
@@ -207,6 +211,7 @@ class ProcessManager:
         now = time.monotonic()
         self._respawned = [t for t in self._respawned if now - t < 60.0]
         if len(self._respawned) >= _RESPAWNS:
+            self._refused = self._refused or f"{_RESPAWNS} have ended within a minute; after it another is tried"
             return
         self._respawned.append(now)
         last = self._view.published()
@@ -217,6 +222,7 @@ class ProcessManager:
         if pid is None:
             pid = await self._launcher.spawn(replace(self._config, after_loss=lost, shelves=tuple(last.shelves)))
         await self._attach(pid)
+        self._refused = ""
 
 
 def _loss(last: messages.Published, code: int | None, killed: str) -> str:
