@@ -9,6 +9,7 @@ real `fullpose serve`, in binary.
 
 import argparse
 import asyncio
+import json
 import math
 import select
 import socket
@@ -54,6 +55,11 @@ class Udp:
         self._link.connect(("127.0.0.1", port))
         self._link.setblocking(False)
 
+    @property
+    def address(self) -> str:
+        """Where they come from."""
+        return "{}:{}".format(*self._link.getsockname())
+
     def send(self, sample: bytes) -> None:
         self._link.send(sample)
 
@@ -68,10 +74,10 @@ class Udp:
 class WebSocket:
     """The server's live WebSocket, binary."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, key: str) -> None:
         url = f"ws://127.0.0.1:{port}/api/v1/rigs/{RIG}/live"
         self._link = connect(url, proxy=None, compression=None)
-        self._link.send('{"type": "open"}')
+        self._link.send(json.dumps({"type": "open", "key": key}))
         self._link.recv(timeout=30.0)
 
     def send(self, sample: bytes) -> None:
@@ -143,9 +149,10 @@ async def by_udp(seconds: float) -> None:
         host = RigHost(RigConfig("live", rig, root / "rig", root / "runs", live=live, min_free_mb=1.0))
         await host.start()
         operator = Operator(host)
-        await operator.arm(live={"method": "exact"})
+        udp = Udp(port)
+        await operator.arm(live={"method": "exact", "udp_from": udp.address})
         await operator.must("go_live")
-        source = Source(Udp(port), seconds)
+        source = Source(udp, seconds)
         memory = await followed(source, host.snapshot().health.rig_pid, operator.renew)
         await operator.until("armed", "faulted")
         snapshot = host.snapshot()
@@ -159,8 +166,8 @@ async def by_websocket(seconds: float) -> None:
         async with Client(f"http://127.0.0.1:{port}", name="bench") as client:
             await client.take_lease(RIG)
             await client.command(RIG, "connect")
-            await client.command(RIG, "load", live={"method": "exact"})
-            source = Source(WebSocket(port), seconds)
+            loaded = await client.command(RIG, "load", live={"method": "exact"})
+            source = Source(WebSocket(port, loaded["live_key"]), seconds)
             await client.command(RIG, "arm")
             await client.command(RIG, "go_live")
             pid = (await client.session(RIG))["health"]["rig_pid"]

@@ -22,6 +22,7 @@ from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.live.packets import Kind, encode_sample
+from fullpose_server.runtime.live.provenance import digest_of
 from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.loop.clock import MadeUpClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
@@ -32,6 +33,7 @@ from fullpose_server.session.states import State
 
 RIG = "vertical-4"
 PROOF = proof_of("the bench's secret")
+LIVE_KEY = "the key of the live source"
 PERIOD_NS = 1_000_000
 
 
@@ -48,13 +50,14 @@ class Source:
         """None."""
         return -1
 
-    def recvfrom(self, size: int, /) -> tuple[bytes, str]:
+    def recvfrom(self, size: int, /) -> tuple[bytes, str]:  # noqa: ARG002
         """One sample a tick."""
         self._waiting = self.open and not self._waiting
         if not self._waiting:
             raise BlockingIOError
         self._sent += 1
-        return encode_sample(Kind.EULER, self._sent, seconds(self._clock), (0.0, 0.0, 0.0), ())[:size], "source"
+        sample = encode_sample(Kind.EULER, self._sent, seconds(self._clock), (0.0, 0.0, 0.0), ())
+        return sample + digest_of(LIVE_KEY), "source"
 
     def sendto(self, data: bytes, to: Any, /) -> int:  # noqa: ARG002
         """The reply goes nowhere."""
@@ -106,7 +109,7 @@ class Bench:
         """One command that is to be carried out."""
         self.sequence += 1
         token = LeaseToken(self.epoch, self.sequence, PROOF)
-        reply = self.answer(messages.Request(0, "command", "bench", command, args, token)).reply
+        reply = self.answer(messages.Request(0, "command", "bench", command, args, token, key=LIVE_KEY)).reply
         if not reply.ok:
             raise RuntimeError(f"{command}: {reply}")
 

@@ -52,6 +52,7 @@ class Client:
         self.url = url.rstrip("/")
         self.name = name
         self._leases: dict[str, _Lease] = {}  # by rig: each rig has epochs of its own
+        self._live_keys: dict[str, str] = {}  # of the live sources that were loaded last, by rig
         self._http = httpx.AsyncClient(
             base_url=self.url + API, headers={"X-Fullpose-Client": name}, timeout=timeout_s, trust_env=False
         )
@@ -162,7 +163,10 @@ class Client:
     async def command(self, rig: str, command: str, **args: Any) -> dict[str, Any]:
         """Command the session under the lease."""
         body = {"command": command, "args": args, "lease": self._lease(rig).next()}
-        return await self._object("POST", f"/rigs/{quote(rig)}/commands", json=body)
+        done = await self._object("POST", f"/rigs/{quote(rig)}/commands", json=body)
+        if done.get("live_key") is not None:
+            self._live_keys[rig] = done["live_key"]
+        return done
 
     async def stop(self, rig: str) -> dict[str, Any]:
         """Brake inside the limits; needs no lease."""
@@ -199,11 +203,14 @@ class Client:
     async def live(self, rig: str, *, load: bool = True, **settings: Any) -> AsyncIterator[ClientConnection]:
         """The rig's live source: opened, and with `load` loaded under the lease (`method`, `options`, `convention`).
 
+        Without `load`, `key` is what who loaded it was answered, `live_key`; by default what this client was answered.
         Send samples, receive replies (docs/guide/live.md). The rig stops where the connection ends while it is live.
         """
         message: dict[str, Any] = {"type": "open"} | settings
         if load:
             message["lease"] = self._lease(rig).next()
+        else:
+            message.setdefault("key", self._live_keys.get(rig))
         url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/live"
         name = {"X-Fullpose-Client": self.name}
         try:

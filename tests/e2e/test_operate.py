@@ -204,11 +204,11 @@ def test_two_consoles_at_one_rig(page: Page, pages: Pages, shots: Path) -> None:
     expect(page.get_by_role("button", name="Take control")).to_be_visible()
 
 
-def swing(address: str, rig: str, over: threading.Event) -> None:
+def swing(address: str, rig: str, key: str, over: threading.Event) -> None:
     """A live source: a small swing from rest, a sample every 10 ms, until it is over."""
     url = f"{address.replace('http', 'ws', 1)}/api/v1/rigs/{rig}/live"
     with connect(url, proxy=None, compression=None) as link:
-        link.send(json.dumps({"type": "open"}))
+        link.send(json.dumps({"type": "open", "key": key}))
         begun = time.monotonic()
         while not over.wait(0.01):
             t = time.monotonic() - begun
@@ -234,10 +234,12 @@ def test_a_live_source_is_followed_until_it_is_gone(page: Page, server: Server, 
     console.expect_state("ready")
     live = page.get_by_test_id("live")
     expect(live).to_have_text("loaded, not flown")
+    key = page.get_by_test_id("live-key").inner_text()
+    page.screenshot(path=shots / "operate-live-key.png")
     console.give("arm", "armed")
     expect(console.button("start")).to_be_hidden()
     over = threading.Event()
-    source = threading.Thread(target=swing, args=(server.url, "horizontal-4", over))
+    source = threading.Thread(target=swing, args=(server.url, "horizontal-4", key, over))
     source.start()
     try:
         console.give("go_live", "live")

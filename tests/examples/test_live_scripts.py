@@ -47,9 +47,11 @@ def test_jsbsim_is_followed_exactly(server: LiveServer) -> None:
 def test_the_plain_client_is_answered_and_followed(server: LiveServer, port: int) -> None:
     operator = Operator(server)
     operator.to_idle()
-    assert "status 8" in run("udp_client.py", str(port), "1.5")
-    for command, args in (("load", {"live": {}}), ("arm", {}), ("go_live", {})):
-        assert operator.command(command, **args).is_success
+    assert "status 32" in run("udp_client.py", str(port), "1.5")
+    key = operator.command("load", live={}).json()["live_key"]
+    assert "status 8" in run("udp_client.py", str(port), "1.5", key)
+    for command in ("arm", "go_live"):
+        assert operator.command(command).is_success
     over = threading.Event()
 
     def renew() -> None:
@@ -59,7 +61,7 @@ def test_the_plain_client_is_answered_and_followed(server: LiveServer, port: int
     renewing = threading.Thread(target=renew)
     renewing.start()
     try:
-        said = run("udp_client.py", str(port), "3.5")
+        said = run("udp_client.py", str(port), "3.5", key)
     finally:
         over.set()
         renewing.join()

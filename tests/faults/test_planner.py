@@ -20,6 +20,7 @@ from fullpose_server.runtime.live.packets import (
     decode_reply,
     encode_sample,
 )
+from fullpose_server.runtime.live.provenance import digest_of
 from tests.fullpose_server.runtime import rigs
 from tests.fullpose_server.runtime.live.swing import flight
 from tests.fullpose_server.runtime.rigs import config_of, hosted, within_limits
@@ -50,7 +51,8 @@ async def follow(operator: rigs.Operator, source: socket.socket, replies: list[L
     while True:
         t = time.monotonic() - started
         q, rate = flight(t)
-        source.send(encode_sample(Kind.QUATERNION, sequence, t, tuple(q), tuple(np.degrees(rate))))
+        sample = encode_sample(Kind.QUATERNION, sequence, t, tuple(q), tuple(np.degrees(rate)))
+        source.send(sample + digest_of(rigs.LIVE_KEY))
         sequence += 1
         while True:
             try:

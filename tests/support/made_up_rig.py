@@ -12,6 +12,7 @@ from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.live.packets import Kind, encode_sample
+from fullpose_server.runtime.live.provenance import digest_of
 from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.loop.clock import MadeUpClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
@@ -21,6 +22,7 @@ from fullpose_server.session.lease import LeaseToken, proof_of
 from fullpose_server.session.states import State
 
 PROOF = proof_of("anna's secret")
+LIVE_KEY = "the key of the live source"
 
 
 class Link:
@@ -113,7 +115,8 @@ class MadeUpRig:
     def ask(self, op: str, command: str, args: dict[str, Any], action: str = "") -> messages.Answer:
         self.number += 1
         token = LeaseToken(self.epoch, self.sequence, PROOF)
-        return self.answer(messages.Request(self.number, op, "anna", command, args, token, action, None, PROOF))
+        asked = messages.Request(self.number, op, "anna", command, args, token, action, None, PROOF, LIVE_KEY)
+        return self.answer(asked)
 
     def take(self) -> None:
         lease = self.ask("lease", "", {}, "take").lease
@@ -152,7 +155,8 @@ class MadeUpRig:
         if self.owner_heard and self.epoch and self.parts.state.ticks % 50 == 0:
             self.ask("lease", "", {}, "renew")
         if self.source_heard and self.state is State.LIVE:
-            self.link.waiting.append((self.source(self.sent, self.sent / self.config.rate_hz), "source"))
+            sample = self.source(self.sent, self.sent / self.config.rate_hz)
+            self.link.waiting.append((sample + digest_of(LIVE_KEY), "source"))
             self.sent += 1
         self.loop.tick(self.clock.now, 0, self.missed)
 

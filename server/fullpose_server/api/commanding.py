@@ -1,6 +1,7 @@
 """What every way to command a session shares: the priority channel of stop and E-stop, and the audit that follows."""
 
 import asyncio
+import secrets
 from collections.abc import Coroutine
 from typing import Any
 
@@ -11,6 +12,13 @@ from fullpose_server.formats.plan_folder import FORMAT, MAKE_AGAIN, rig_hash
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.session.errors import IllegalCommandError
 from fullpose_server.session.states import Command, State
+
+SECRET_BYTES = 32
+
+
+def new_secret() -> str:
+    """A secret of the server's making: it is told once, to whom it is for, and kept nowhere."""
+    return secrets.token_urlsafe(SECRET_BYTES)
 
 
 def by_priority(services: Services, rig: str, command: Command, who: str) -> Coroutine[Any, Any, Reply]:

@@ -13,7 +13,7 @@ from fullpose_server.api.schemas.base import FieldProblem, Problem
 MEDIA_TYPE = "application/problem+json"
 RETRY_S = 5  # what a client is told to wait where the server has too much to do, or no room
 LONGEST = 2000  # characters of a detail
-_SECRET = {"lease", "secret"}  # what a problem never shows the value of
+_SECRET = {"lease", "secret", "key"}  # what a problem never shows the value of
 _ABRIDGING = reprlib.Repr()  # never the whole of a large value
 _ABRIDGING.maxstring = _ABRIDGING.maxother = _ABRIDGING.maxlong = 120
 

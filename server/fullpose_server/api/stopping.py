@@ -12,7 +12,7 @@ from fullpose_server.session.states import STOP_CATEGORY, State
 from fullpose_server.store.audit_entry import AuditEntry
 
 # Codes of the session's refusals that are not about its state.
-_STATUS = {"lease_needed": 403, "lease_lost": 403, "rig_unreachable": 503}
+_STATUS = {"lease_needed": 403, "lease_lost": 403, "live_key": 403, "rig_unreachable": 503}
 _WHO = re.compile(CLIENT_NAME)
 _NOT_A_NAME = re.compile(r"[^\w.@:+-]")
 _LONGEST = 64

@@ -47,8 +47,8 @@ def euler(t: float) -> tuple[float, float, float]:
 
 
 def opened(stream: ClientConnection, operator: Operator | None = None, **settings: Any) -> dict[str, Any]:
-    lease = None if operator is None else operator.token()
-    stream.send(json.dumps({"type": "open", "lease": lease} | settings))
+    lease = {} if operator is None else {"lease": operator.token()}
+    stream.send(json.dumps({"type": "open"} | lease | settings))
     answer: dict[str, Any] = json.loads(stream.recv(timeout=30.0))
     return answer
 
@@ -111,10 +111,10 @@ def test_json_samples_are_followed_and_the_sockets_end_is_a_controlled_stop(
 
 
 def test_binary_samples_are_the_datagrams_and_ned_is_turned(server: LiveServer, operator: Operator) -> None:
-    assert operator.command("load", live={"method": "exact"}).is_success
+    loaded = operator.command("load", live={"method": "exact"})
     assert operator.session()["plan"]["live"] is True
     with source(server) as stream:
-        assert opened(stream)["loaded"] is True  # no lease: the operator has loaded it
+        assert opened(stream, key=loaded.json()["live_key"])["loaded"] is True  # no lease: the operator has loaded it
         assert operator.command("arm").is_success
         assert operator.command("go_live").is_success
 
@@ -150,7 +150,7 @@ def test_binary_samples_are_the_datagrams_and_ned_is_turned(server: LiveServer, 
 
 def test_before_it_is_live_samples_are_answered_and_nothing_moves(server: LiveServer, operator: Operator) -> None:
     with source(server) as stream:
-        assert opened(stream)["loaded"] is False
+        assert opened(stream, operator)["loaded"] is True
         stream.send(json.dumps({"type": "sample", "time_s": 1.0, "q": [1, 0, 0, 0], "body_rate_deg_s": [0, 0, 0]}))
         assert json.loads(stream.recv(timeout=5.0))["status"] == ["idle"]
         stream.send(encode_sample(Kind.QUATERNION, 7, 1.1, (1.0, 0.0, 0.0, 0.0), ()))
@@ -160,7 +160,33 @@ def test_before_it_is_live_samples_are_answered_and_nothing_moves(server: LiveSe
         reply = decode_reply(data)
         assert reply is not None
         assert (reply.sequence, reply.status) == (7, LiveStatus.IDLE)
-    assert operator.session()["state"] == "idle"
+    assert operator.session()["state"] == "ready"
+
+
+def test_a_source_shows_the_lease_or_the_key_that_its_load_was_answered(server: LiveServer, operator: Operator) -> None:
+    key = operator.command("load", live={"method": "exact"}).json()["live_key"]
+    assert operator.command("acknowledge").json()["live_key"] is None
+    sample = json.dumps({"type": "sample", "time_s": 1.0, "q": [1, 0, 0, 0]})
+    with source(server) as stream:
+        for proof in ({}, {"lease": operator.token(), "key": key}, {"key": None}, {"key": "no key"}):
+            assert opened(stream, **proof)["problem"]["status"] == 422
+        refused = opened(stream, key="guessed")["problem"]
+        assert (refused["status"], refused["type"]) == (403, "urn:fullpose:problem:live-key")
+        assert opened(stream, key=key)["loaded"] is True
+        stream.send(sample)
+        assert received(stream, "reply")["status"] == ["idle"]
+        # Loaded anew, for another: who had the earlier key is not that one.
+        assert operator.command("unload").is_success
+        another = operator.command("load", live={"method": "exact"}).json()["live_key"]
+        assert another != key
+        stream.send(sample)
+        assert received(stream, "reply")["status"] == ["unproven"]
+        assert opened(stream, key=another)["type"] == "opened"
+        stream.send(sample)
+        assert received(stream, "reply")["status"] == ["idle"]
+    told = [server.http.get(path).text for path in (f"/rigs/{RIG}/session", "/audit", "/metrics")]
+    told += [path.read_bytes().decode("latin-1") for path in server.settings.data_dir.rglob("*") if path.is_file()]
+    assert not any(secret in text for secret in (key, another) for text in told)
 
 
 def test_what_is_no_sample_is_a_problem_and_the_connection_goes_on(server: LiveServer, operator: Operator) -> None:
@@ -171,7 +197,7 @@ def test_what_is_no_sample_is_a_problem_and_the_connection_goes_on(server: LiveS
             answer = opened(stream, operator, **settings)
             assert word in answer["problem"]["detail"]
         assert opened(stream, None, lease={"epoch": 0, "sequence": 1, "secret": "guessed"})["problem"]["status"] == 403
-        opened(stream)
+        assert opened(stream, operator)["type"] == "opened"
         for data in (
             '{"type": "sample", "time_s": 1.0}',
             '{"type": "sample", "time_s": 1.0, "q": [1, 0, 0, 0], "euler_deg": [0, 0, 0]}',
@@ -188,8 +214,9 @@ def test_what_is_no_sample_is_a_problem_and_the_connection_goes_on(server: LiveS
 
 
 def test_one_source_a_rig_and_none_from_foreign_pages(server: LiveServer, operator: Operator) -> None:
+    key = operator.command("load", live={"method": "exact"}).json()["live_key"]
     with source(server) as stream:
-        opened(stream)
+        opened(stream, key=key)
         with pytest.raises(InvalidStatus) as refused, source(server):
             pass
         assert refused.value.response.status_code == 409
@@ -197,7 +224,7 @@ def test_one_source_a_rig_and_none_from_foreign_pages(server: LiveServer, operat
     def taken() -> bool:
         try:
             with source(server) as stream:
-                return bool(opened(stream)["type"] == "opened")
+                return bool(opened(stream, key=key)["type"] == "opened")
         except InvalidStatus:
             return False
 

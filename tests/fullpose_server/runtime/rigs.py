@@ -47,6 +47,9 @@ def plan_of(
     return make_plan(PlanOrigin(plan_id, "0" * 64, "test"), rig, rate_hz, path, feasible=True)
 
 
+LIVE_KEY = "the key of the live source"
+
+
 class Operator:
     """Drives a host as a client does: takes the lease, counts the sequence."""
 
@@ -66,7 +69,8 @@ class Operator:
 
     async def say(self, command: str, **args: Any) -> Reply:
         self.sequence += 1
-        return await self.host.command(command, args, self.who, LeaseToken(self.epoch, self.sequence, self.proof))
+        token = LeaseToken(self.epoch, self.sequence, self.proof)
+        return await self.host.command(command, args, self.who, token, LIVE_KEY)
 
     async def must(self, command: str, **args: Any) -> Reply:
         reply = await self.say(command, **args)

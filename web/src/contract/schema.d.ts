@@ -848,6 +848,33 @@ export interface components {
             time_s: number;
         };
         /**
+         * CommandDone
+         * @description A command that was accepted, and what it gave.
+         */
+        CommandDone: {
+            /** Command */
+            command: string;
+            /**
+             * Live Key
+             * @description Of load with live: what the source proves itself by, told here once; a later load gives another
+             */
+            live_key?: string | null;
+            /** Revision */
+            revision: number;
+            state_after: components["schemas"]["State"];
+            state_before: components["schemas"]["State"];
+            /**
+             * Stop Category
+             * @description Of stop and estop, IEC 60204-1: 1, stopped under control, then power off; 2, power stays on. No safety function
+             */
+            stop_category?: (1 | 2) | null;
+            /**
+             * Unknown
+             * @description Of stop and estop, with 202: the order was given, and this is not known of what came of it
+             */
+            unknown?: string | null;
+        };
+        /**
          * CommandOut
          * @description A command that was accepted: what the session was and is.
          */
@@ -1365,6 +1392,11 @@ export interface components {
             options: {
                 [key: string]: boolean | number | string;
             };
+            /**
+             * Udp From
+             * @description Address and port, 127.0.0.1:7461, that the source sends from by UDP; null: it has the key
+             */
+            udp_from?: string | null;
         };
         LiveMessageIn: components["schemas"]["OpenLive"] | components["schemas"]["LiveSampleIn"];
         LiveMessageOut: components["schemas"]["LiveOpened"] | components["schemas"]["LiveReplyOut"] | components["schemas"]["LiveProblem"];
@@ -1427,6 +1459,11 @@ export interface components {
              */
             rate_hz: number;
             /**
+             * Unproven
+             * @description Not of the source that was loaded: not used
+             */
+            unproven: number;
+            /**
              * Way Age Ms
              * @description Since the preview's planner was heard; null: no such method
              */
@@ -1472,7 +1509,7 @@ export interface components {
             /** Server Latency Us */
             server_latency_us: number | null;
             /** Status */
-            status: ("followed" | "limited" | "dropped" | "idle" | "implausible")[];
+            status: ("followed" | "limited" | "dropped" | "idle" | "implausible" | "unproven")[];
             /** Time S */
             time_s: number;
             /**
@@ -1737,9 +1774,10 @@ export interface components {
         };
         /**
          * OpenLive
-         * @description First message of the client. With `lease` it loads the live source; without, somebody else loads it.
+         * @description First message of the client. With `lease` it loads the live source; with `key` somebody else has loaded it.
          *
-         *     `convention` is of JSON samples: nue (yaw, pitch, roll) or ned (heading, pitch, bank).
+         *     The key is what that load was answered (`live_key`). `convention` is of JSON samples: nue (yaw, pitch, roll) or ned
+         *     (heading, pitch, bank).
          */
         OpenLive: {
             /**
@@ -1754,6 +1792,11 @@ export interface components {
              * @default 5
              */
             first_sample_s: number;
+            /**
+             * Key
+             * @default null
+             */
+            key: string | null;
             /** @default null */
             lease: components["schemas"]["LeaseToken"] | null;
             /**
@@ -1773,6 +1816,12 @@ export interface components {
              * @enum {string}
              */
             type: "open";
+            /**
+             * Udp From
+             * @description Address and port, 127.0.0.1:7461, that the source sends from by UDP; null: it has the key
+             * @default null
+             */
+            udp_from: string | null;
         };
         /**
          * OpenSolve
@@ -4736,7 +4785,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CommandOut"];
+                    "application/json": components["schemas"]["CommandDone"];
                 };
             };
             /** @description A stop was given to a rig process that is not there, or does not answer: `unknown` tells */

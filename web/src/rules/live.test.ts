@@ -18,6 +18,7 @@ it("tells rate, age and what was not used", () => {
     bad: 0,
     clock_steps: 0,
     implausible: 0,
+    unproven: 0,
     way_age_ms: null,
   };
   expect(liveFigures(null)).toBe("");

@@ -29,6 +29,8 @@ export class Operated implements Feed {
   ageMs: number | null = $state(null);
   freshness: Freshness = $state("stale");
   busy = $state(false);
+  /** What the live source proves itself by that was loaded here; told once, so gone with the page. */
+  liveKey: string | null = $state(null);
   history = new History(HISTORY);
 
   readonly session = $derived(this.link.session);
@@ -80,6 +82,7 @@ export class Operated implements Feed {
     this.latest = null;
     this.history = new History(HISTORY);
     this.lease.of(null);
+    this.liveKey = null;
     this.notices.clear();
     this.#look();
   }
@@ -89,7 +92,8 @@ export class Operated implements Feed {
     if (this.name === null) return false;
     this.busy = true;
     try {
-      await this.api.command(this.name, command, args, this.lease.next());
+      const done = await this.api.command(this.name, command, args, this.lease.next());
+      if ("live_key" in done && command === "load") this.liveKey = done.live_key ?? null;
       return true;
     } catch (error) {
       this.notices.say("problem", messageOf(error));

@@ -12,7 +12,7 @@ import msgspec
 from fastapi import APIRouter, WebSocket
 from pydantic import TypeAdapter
 
-from fullpose_server.api.commanding import audit, with_rig_file
+from fullpose_server.api.commanding import audit, new_secret, with_rig_file
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import problem_of
 from fullpose_server.api.problems import ApiError
@@ -25,6 +25,7 @@ from fullpose_server.api.schemas.live import (
     OpenLive,
     SampleStatus,
 )
+from fullpose_server.api.schemas.session import LiveLoad
 from fullpose_server.api.stopping import answer
 from fullpose_server.api.streams.live_link import LinkLostError, LiveLink, split
 from fullpose_server.api.streams.tasks import GoneError, close_for, send_bytes, send_text
@@ -41,6 +42,7 @@ _NAMES: tuple[tuple[LiveStatus, SampleStatus], ...] = (
     (LiveStatus.DROPPED, "dropped"),
     (LiveStatus.IDLE, "idle"),
     (LiveStatus.IMPLAUSIBLE, "implausible"),
+    (LiveStatus.UNPROVEN, "unproven"),
 )
 _KINDS = {
     ("nue", True): Kind.QUATERNION,
@@ -143,14 +145,18 @@ class _Source:
         return self._convention
 
     async def _open(self, message: OpenLive) -> None:
-        if message.lease is not None:
-            settings = message.model_dump(include={"method", "options", "first_sample_s"})
+        key = message.key or new_secret()
+        if message.lease is None:
+            answer("live", await self._host.prove_live(self._who, key))  # raises the refusal
+        else:
+            settings = message.model_dump(include=set(LiveLoad.model_fields))
             args = await with_rig_file(self._services, self._host.name, {"live": settings})
-            reply = await self._host.command("load", args, self._who, message.lease.shown())
+            reply = await self._host.command("load", args, self._who, message.lease.shown(), key)
             numbers = message.lease.epoch, message.lease.sequence
             audit(self._services, self._host.name, self._who, "load", {"live": settings}, numbers, reply)
             answer("load", reply)  # raises the refusal
         self._convention = message.convention
+        self._link.prove(key)
         snapshot = self._host.snapshot()
         await self._say(
             LiveOpened.model_validate(

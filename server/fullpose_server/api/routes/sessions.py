@@ -1,17 +1,17 @@
 """Sessions: the snapshot, commands, the lease, stop and E-stop on the priority channel, alarms."""
 
 import asyncio
-import secrets
 from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Response
 
-from fullpose_server.api.commanding import audit, by_priority, plan_refusal, with_rig_file, without_process
+from fullpose_server.api.commanding import audit, by_priority, new_secret, plan_refusal, with_rig_file, without_process
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.session import (
     AlarmOut,
+    CommandDone,
     CommandIn,
     CommandOut,
     LeaseGiven,
@@ -33,7 +33,6 @@ REFUSED: dict[int | str, dict[str, Any]] = {
     409: {"description": "The session refuses; nothing has changed. Names state, command and what is allowed"},
     503: {"description": "The rig process does not answer"},
 }
-SECRET_BYTES = 32
 STOPPED = REFUSED | {
     202: {
         "model": CommandOut,
@@ -59,24 +58,26 @@ async def get_alarms(rig: str, services: ServicesDep) -> list[AlarmOut]:
 @router.post("/commands", responses=STOPPED)
 async def command(
     rig: str, body: Annotated[CommandIn, Body()], services: ServicesDep, who: WhoStopsDep, response: Response
-) -> CommandOut:
+) -> CommandDone:
     """Command the session. Needs the lease, but for stop and estop."""
     if body.command in NEEDS_NO_LEASE:
-        return await _by_priority(services, rig, Command(body.command), who, response)
+        done = await _by_priority(services, rig, Command(body.command), who, response)
+        return CommandDone(**done.model_dump())
     host = services.hosts.get(rig)
     if host is None:
         raise await _refused_without_process(services, rig, body, who)
     args: dict[str, Any] = body.args.model_dump(exclude_none=True)
     if isinstance(body.args, LoadArgs):
         args = await _load_args(services, rig, body.args)
+    key = new_secret() if "live" in args else None
     if body.command in (Command.LOAD, Command.ARM):
         args = await with_rig_file(services, rig, args)
     try:
-        reply = await host.command(body.command, args, who, None if body.lease is None else body.lease.shown())
+        reply = await host.command(body.command, args, who, None if body.lease is None else body.lease.shown(), key)
     except RequestTooLargeError as error:
         raise ApiError(413, "too-large", str(error), command=body.command) from None
     audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), _numbers(body), reply)
-    return answer(body.command, reply)
+    return CommandDone(**answer(body.command, reply).model_dump(), live_key=key)
 
 
 @router.post("/stop", responses=STOPPED)
@@ -111,7 +112,7 @@ async def _by_priority(services: Services, rig: str, command: Command, who: str,
 
 async def _lease(services: Services, host: RigHost, who: str, body: LeaseIn) -> LeaseGiven:
     before, action = host.snapshot().state, LeaseAction(body.action)
-    given = secrets.token_urlsafe(SECRET_BYTES) if action in GIVES_SECRET else None
+    given = new_secret() if action in GIVES_SECRET else None
     args = {} if body.to is None else {"to": body.to}
     try:
         held = await host.lease(action, who, proof_of(given or body.secret or ""), body.to)

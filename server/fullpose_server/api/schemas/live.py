@@ -9,21 +9,28 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fullpose_server.api.schemas.base import Four, Number, Problem, Three, Wire, check_one
-from fullpose_server.api.schemas.session import LeaseToken, LiveLoad
+from fullpose_server.api.schemas.session import LeaseToken, LiveLoad, Secret
 from fullpose_server.session.states import State
 
-SampleStatus = Literal["followed", "limited", "dropped", "idle", "implausible"]
+SampleStatus = Literal["followed", "limited", "dropped", "idle", "implausible", "unproven"]
 
 
 class OpenLive(LiveLoad):
-    """First message of the client. With `lease` it loads the live source; without, somebody else loads it.
+    """First message of the client. With `lease` it loads the live source; with `key` somebody else has loaded it.
 
-    `convention` is of JSON samples: nue (yaw, pitch, roll) or ned (heading, pitch, bank).
+    The key is what that load was answered (`live_key`). `convention` is of JSON samples: nue (yaw, pitch, roll) or ned
+    (heading, pitch, bank).
     """
 
     type: Literal["open"]
     convention: Literal["nue", "ned"] = "nue"
     lease: LeaseToken | None = None
+    key: Secret | None = Field(default=None, repr=False)
+
+    @model_validator(mode="after")
+    def _one_proof(self) -> Self:
+        check_one(self, "lease", "key", "one proof: the lease, or the key of the source that was loaded")
+        return self
 
 
 class LiveSampleIn(Wire):

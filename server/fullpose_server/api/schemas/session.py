@@ -42,6 +42,11 @@ class LiveLoad(Wire):
     method: Word = "exact"
     options: Options = Field(default={})
     first_sample_s: Number = Field(default=5.0, gt=0.0, le=60.0, description="How long go_live waits for the source")
+    udp_from: str | None = Field(
+        default=None,
+        pattern=r"^[0-9.]{7,15}:[0-9]{1,5}$",
+        description="Address and port, 127.0.0.1:7461, that the source sends from by UDP; null: it has the key",
+    )
 
 
 class LoadArgs(Wire):
@@ -146,6 +151,16 @@ class CommandOut(Wire):
     unknown: str | None = Field(
         default=None,
         description="Of stop and estop, with 202: the order was given, and this is not known of what came of it",
+    )
+
+
+class CommandDone(CommandOut):
+    """A command that was accepted, and what it gave."""
+
+    live_key: str | None = Field(
+        default=None,
+        repr=False,
+        description="Of load with live: what the source proves itself by, told here once; a later load gives another",
     )
 
 
@@ -267,6 +282,7 @@ class LiveOut(Wire):
     bad: int = Field(description="No samples at all")
     clock_steps: int = Field(description="How often the source's clock began anew")
     implausible: int = Field(description="Beyond a plausible body rate: not used")
+    unproven: int = Field(description="Not of the source that was loaded: not used")
     way_age_ms: float | None = Field(description="Since the preview's planner was heard; null: no such method")
 
 

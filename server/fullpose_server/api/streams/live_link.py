@@ -18,6 +18,7 @@ from fullpose_server.runtime.live.packets import (
     decode_reply,
     decode_sample,
 )
+from fullpose_server.runtime.live.provenance import digest_of
 
 PENDING = 4096  # samples whose arrival is remembered: as many as four seconds at 1 kHz
 
@@ -34,6 +35,7 @@ class LiveLink:
         self._loop = asyncio.get_running_loop()
         self._readable = asyncio.Event()
         self._arrived: OrderedDict[int, float] = OrderedDict()
+        self._digest = b""
 
     def __enter__(self) -> Self:
         self._loop.add_reader(self._link, self._readable.set)
@@ -46,6 +48,10 @@ class LiveLink:
         self._loop.remove_writer(self._link)
         self._link.close()
 
+    def prove(self, key: str) -> None:
+        """Hand samples on as those of the source that has `key`."""
+        self._digest = digest_of(key)
+
     async def send(self, sample: bytes) -> bool:
         """Hand one datagram on, waiting for room; False where it is no sample. Raises `LinkLostError`."""
         decoded = decode_sample(sample)
@@ -56,7 +62,7 @@ class LiveLink:
             self._arrived.popitem(last=False)
         while True:
             try:
-                self._link.send(sample)
+                self._link.send(sample + self._digest)
             except BlockingIOError:
                 await self._room()
             except OSError as cause:

@@ -13,7 +13,7 @@ MAX_REQUEST = 1 << 16  # [bytes] what the rig process reads of a packet; of a lo
 
 @dataclass(frozen=True)
 class Request:
-    """Server to rig. `op` is command, lease or exit; the fields that do not belong to it stay at their defaults."""
+    """Server to rig. `op` is command, lease, live or exit; fields that do not belong to it stay at their defaults."""
 
     id: int
     op: str
@@ -24,6 +24,7 @@ class Request:
     action: str = ""
     to: str | None = None
     proof: str | None = field(default=None, repr=False)  # of the lease's secret, or of the one that the action gives
+    key: str | None = field(default=None, repr=False)  # of the live source: that `load` gives, or `live` shows
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,7 @@ class LiveHealth:
     bad: int
     clock_steps: int
     implausible: int
+    unproven: int
     way_age_ms: float | None  # since the preview's planner was heard; None: no such method
 
 

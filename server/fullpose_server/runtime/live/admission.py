@@ -29,6 +29,7 @@ class Admission:
 
     def begin(self) -> None:
         """Whoever is heard first is followed."""
+        self.unproven = 0  # samples that are not of the loaded source
         self.strangers = 0  # samples of another source than the one that is followed
         self.implausible = 0
         self._source: tuple[int, Any] | None = None  # socket and sender that is followed

@@ -36,6 +36,7 @@ class LiveStatus(IntFlag):
     DROPPED = 4  # out of order, sent twice, or no numbers: not used
     IDLE = 8  # the session is not live: nothing moves
     IMPLAUSIBLE = 16  # its body rate is beyond what is plausible: not used; the reply says both
+    UNPROVEN = 32  # not of the source that was loaded: not used
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from fullpose_server.runtime.live.packets import (
     decode_sample,
     encode_reply,
 )
+from fullpose_server.runtime.live.provenance import LARGEST, SIZES, Provenance
 from fullpose_server.runtime.live.settings import LiveError, LiveSettings
 from fullpose_server.runtime.live.steppers import LiveStep
 from fullpose_server.runtime.motion.path_player import attitude_error
@@ -58,10 +59,11 @@ class Link(Protocol):
 
 @dataclass(frozen=True)
 class ReadyLive:
-    """Settings with the step that was made for them."""
+    """Settings with the step that was made for them, and what the source proves itself by."""
 
     settings: LiveSettings
     step: LiveStep
+    provenance: Provenance
 
 
 class LiveView(NamedTuple):
@@ -79,6 +81,7 @@ class LiveView(NamedTuple):
     implausible: int
     implausible_deg_s: float  # of the newest of them
     plausible_deg_s: float  # the greatest that is used
+    unproven: int
 
 
 class LiveSource:
@@ -94,6 +97,7 @@ class LiveSource:
         self._buffer = LiveBuffer(config.delay_ms / 1e3)
         self._step: LiveStep | None = None
         self._settings = LiveSettings()
+        self._provenance = Provenance()
         self._links = tuple(links)
         self._monotonic = monotonic
         self._waiting: list[Taken] = []
@@ -115,15 +119,21 @@ class LiveSource:
         for each in self._links:
             each.close()
 
-    def ready(self, settings: LiveSettings) -> ReadyLive:
-        """Make ready for `settings`, at rest. Changes nothing. Raises `LiveError`."""
-        return ReadyLive(settings, live_step(self._rig, settings, self._dt))
+    def ready(self, settings: LiveSettings, key: str | None = None) -> ReadyLive:
+        """Make ready for `settings`, at rest, and a source that has `key`. Changes nothing. Raises `LiveError`."""
+        provenance = Provenance(key, settings.address)
+        return ReadyLive(settings, live_step(self._rig, settings, self._dt), provenance)
+
+    def has(self, digest: bytes) -> bool:
+        """Whether it is that of the key of the source that is loaded."""
+        return self._provenance.has(digest)
 
     def bind(self, ready: ReadyLive) -> None:
         """Take what was made ready in the place of what was before."""
         self.unload()
         self._step = ready.step
         self._settings = ready.settings
+        self._provenance = ready.provenance
         self._buffer = LiveBuffer(self._config.delay_ms / 1e3 + ready.step.preview_s)
 
     def unload(self) -> None:
@@ -131,6 +141,7 @@ class LiveSource:
         if self._step is not None:
             self._step.close()
             self._step = None
+        self._provenance = Provenance()
 
     def _loaded(self) -> LiveStep:
         if self._step is None:
@@ -162,14 +173,18 @@ class LiveSource:
         for each in self._links:
             for _ in range(_PER_TICK):
                 try:
-                    data, sender = each.recvfrom(SAMPLE_SIZE + 1)
+                    data, sender = each.recvfrom(LARGEST + 1)
                 except OSError:
                     break
-                sample = decode_sample(data)
+                sample = decode_sample(data[:SAMPLE_SIZE]) if len(data) in SIZES else None
                 if sample is None:
                     self.bad += 1
                     continue
-                verdict = self._verdict(sample, (each.fileno(), sender), now)
+                if self._provenance.proves(data, sender):
+                    verdict = self._verdict(sample, (each.fileno(), sender), now)
+                else:
+                    self._admission.unproven += 1
+                    verdict = Verdict(LiveStatus.UNPROVEN)
                 self._waiting.append(Taken(sample, verdict, self._monotonic(), each, sender))
 
     def _verdict(self, sample: LiveSample, source: tuple[int, Any], now: float) -> Verdict:
@@ -236,31 +251,27 @@ class LiveSource:
         self._waiting.clear()
 
     @property
-    def heard(self) -> bool:
-        """Whether the last tick had a sample to follow, however old."""
-        return not self._waited
-
-    @property
     def plan_age_s(self) -> float:
         """How old the planner's last word is [s]; nan where none plans."""
         return math.nan if self._step is None else self._step.plan_age_s
 
     def view(self) -> LiveView:
         """What a monitor needs to know of this tick."""
-        b = self._buffer
+        b, seen = self._buffer, self._admission
         return LiveView(
             self.acquired,
             self.limited,
-            self.heard,
+            not self._waited,
             self.last_age_ms,
             self.plan_age_s,
             self.bad,
             b.dropped,
             b.steps,
-            self._admission.strangers,
-            self._admission.implausible,
-            self._admission.implausible_rate * _DEG,
-            self._admission.plausible * _DEG,
+            seen.strangers,
+            seen.implausible,
+            seen.implausible_rate * _DEG,
+            seen.plausible * _DEG,
+            seen.unproven,
         )
 
     def health(self) -> LiveHealth | None:
@@ -282,4 +293,4 @@ class LiveSource:
         """Samples accepted, dropped (late or doubled), bad (no sample at all), implausible, and steps of the clock."""
         b = self._buffer
         told = {"accepted": b.accepted, "dropped": b.dropped, "bad": self.bad, "clock_steps": b.steps}
-        return told | {"implausible": self._admission.implausible}
+        return told | {"implausible": self._admission.implausible, "unproven": self._admission.unproven}

@@ -9,6 +9,7 @@ from typing import Protocol, TypeAlias
 
 from fullpose_server.drives.base import DriveError
 from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.live.provenance import digest_of
 from fullpose_server.runtime.loop import orders
 from fullpose_server.runtime.loop.clock import Deadlines, seconds
 from fullpose_server.runtime.loop.context import Parts
@@ -64,15 +65,17 @@ class CommandHandler:
                 self._command(request, now)
             elif request.op == "lease":
                 lease = self._lease(request, now)
+            elif request.op == "live":
+                self._check_key(request.key or "")
             elif request.op == "exit":
                 self._exit(request.who, now)
             else:
-                raise OrderError("bad_request", f"no request {request.op!r}: command, lease, exit")
+                raise OrderError("bad_request", f"no request {request.op!r}: command, lease, live, exit")
         except SessionError as refusal:
             allowed = [str(c) for c in machine.allowed()]
             word = request.command or request.action or request.op
             error = messages.ErrorBody(refusal.code, str(refusal), machine.state, word, allowed)
-        if request.op == "command" or request.action != LeaseAction.RENEW:
+        if request.op == "command" or (request.op != "live" and request.action != LeaseAction.RENEW):
             p.log.add(
                 "command",
                 who=request.who,
@@ -133,6 +136,10 @@ class CommandHandler:
             raise OrderError("bad_request", f"no lease action {request.action!r}: there are {words}") from None
         return self._parts.machine.lease_action(action, request.who, now, request.proof, request.to)
 
+    def _check_key(self, key: str) -> None:
+        if not self._parts.live.has(digest_of(key)):
+            raise OrderError("live_key", "this is not the key of the live source that is loaded: load it anew")
+
     def _command(self, request: messages.Request, now: float) -> None:
         machine = self._parts.machine
         try:
@@ -165,7 +172,7 @@ class CommandHandler:
             case Command.LOAD:
                 orders.check_rig(request.args, p.config.rig)
                 try:
-                    binding, load = orders.load_of(request.args, p.config.rig, p.motion, p.live)
+                    binding, load = orders.load_of(request.args, p.config.rig, p.motion, p.live, request.key)
                 except MemoryError as cause:
                     raise OrderError(
                         "out_of_memory", "the rig process has no memory for it: load a shorter one"

@@ -206,6 +206,7 @@ class Monitors:
             (live.dropped, "dropped", "samples of the live source came late or twice: not used"),
             (live.clock_steps, "clock_steps", "the live source began anew, or its clock was set"),
             (live.strangers, "second_source", second),
+            (live.unproven, "unproven", "samples that do not prove to be of the source that was loaded: not used"),
         ):
             if self._more(word, count):
                 found.append(said(f"live_{word}", text))

@@ -49,12 +49,17 @@ class Load:
             self.live.step.close()
 
 
-def load_of(args: dict[str, Any], rig: Rig, motion: Motion, live: LiveSource) -> tuple[Binding, Load]:
-    """The plan of `args["plan_folder"]`, or the live settings of `args["live"]`. Raises `OrderError`."""
+def load_of(
+    args: dict[str, Any], rig: Rig, motion: Motion, live: LiveSource, key: str | None = None
+) -> tuple[Binding, Load]:
+    """The plan of `args["plan_folder"]`, or the live settings of `args["live"]`, of a source that has `key`.
+
+    Raises `OrderError`.
+    """
     if "live" in args:
         try:
             settings = msgspec.convert(args["live"], LiveSettings)
-            ready = live.ready(settings)
+            ready = live.ready(settings, key)
         except (msgspec.ValidationError, ValueError) as cause:
             raise OrderError("bad_arguments", f"live: {cause}") from cause
         except LiveError as cause:

@@ -67,15 +67,19 @@ class RigHost:
 
     # --- commands ---
 
-    async def command(self, command: str, args: dict[str, Any], who: str, lease: LeaseToken | None) -> messages.Reply:
+    async def command(
+        self, command: str, args: dict[str, Any], who: str, lease: LeaseToken | None, key: str | None = None
+    ) -> messages.Reply:
         """Do a session command (see server/fullpose_server/session/states.py). A refusal is a reply, not an exception.
 
-        E-stop and stop take their priority channel here too, so that they never queue behind another command.
+        `key`: of the live source that is loaded. E-stop and stop take their priority channel here too, so that they
+        never queue behind another command.
         """
         if command in (Command.STOP, Command.ESTOP):
             return await self.by_priority(Command(command), who)
         before = self._view.state()
-        return (await self._ask(before, command, "command", who, command=command, args=args, lease=lease)).reply
+        asked = {"command": command, "args": args, "lease": lease, "key": key}
+        return (await self._ask(before, command, "command", who, **asked)).reply
 
     async def lease(self, action: LeaseAction, who: str, proof: str, to: str | None = None) -> Lease:
         """Do it under the proof of the lease's secret, or give the secret of `proof` (`GIVES_SECRET`).
@@ -86,6 +90,10 @@ class RigHost:
         if answer.reply.error is not None or answer.lease is None:
             raise RefusedError(answer.reply)
         return answer.lease
+
+    async def prove_live(self, who: str, key: str) -> messages.Reply:
+        """Whether `key` is that of the live source that is loaded: a refusal is a reply."""
+        return (await self._ask(self._view.state(), "live", "live", who, key=key)).reply
 
     def estop(self, who: str) -> None:
         """E-stop, now: a flag in shared memory that the loop reads every tick. Never waits, never queues."""

@@ -12,10 +12,11 @@ from fullpose.attitude import quaternion_from_euler
 from fullpose.rig import builtin_rigs
 from fullpose_server.runtime.contract.config import LiveConfig, RigConfig
 from fullpose_server.runtime.live.packets import Kind, LiveReply, LiveStatus, decode_reply, encode_sample
+from fullpose_server.runtime.live.provenance import digest_of
 from fullpose_server.session.states import State
 from tests.fullpose_server.runtime.live.swing import flight
 from tests.fullpose_server.runtime.rigs import within_limits
-from tests.support.made_up_rig import MadeUpRig, made_up_rig
+from tests.support.made_up_rig import LIVE_KEY, MadeUpRig, made_up_rig
 
 RIG = builtin_rigs()["vertical-limited"]
 
@@ -134,7 +135,7 @@ def test_a_second_source_is_not_followed(rig: MadeUpRig) -> None:
     rig.run(1.0)
     for k in range(2000):
         other = encode_sample(Kind.QUATERNION, k, 1000.0 + k * 1e-3, (0.0, 1.0, 0.0, 0.0), ())
-        rig.link.waiting.append((other, "second"))
+        rig.link.waiting.append((other + digest_of(LIVE_KEY), "second"))
         rig.tick()
     assert rig.state is State.LIVE, rig.codes()
     assert rig.codes() == ["live_second_source"]
@@ -185,3 +186,22 @@ def test_a_source_that_is_implausible_for_long_is_lost_and_stops_the_rig_without
     assert "live_source_lost" in codes
     assert rig.state is State.ARMED
     within_limits(rig.rows(), rig)
+
+
+def test_who_sends_first_and_is_not_the_source_that_was_loaded_is_not_followed(rig: MadeUpRig) -> None:
+    rig.source_heard = False
+    live(rig)
+    sent = (turned(0, 0.0, 60.0), turned(1, 0.1, 60.0) + digest_of("another key"), turned(2, 0.2, 60.0)[:-1])
+    for k in range(300):
+        rig.link.waiting.append((sent[k % 3], "stranger"))
+        rig.tick()
+    assert rig.state is State.LIVE, rig.codes()
+    assert np.abs(rig.rows()["demand_rate"]).max() == 0.0
+    assert sorted(rig.codes()) == ["live_bad", "live_unproven"]
+    assert {reply.status for reply in replies(rig, "stranger")} == {LiveStatus.UNPROVEN}
+    rig.source_heard, rig.source = True, swing
+    rig.run(1.0)
+    assert {reply.status for reply in replies(rig)[-500:]} == {LiveStatus.FOLLOWED}
+    health = rig.parts.live.health()
+    assert health is not None
+    assert (health.unproven, health.bad) == (200, 100)

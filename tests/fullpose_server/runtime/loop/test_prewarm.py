@@ -22,6 +22,7 @@ from fullpose_server.runtime.live.links import open_links
 from fullpose_server.runtime.live.source import LiveSource
 from fullpose_server.runtime.live.settings import LiveSettings
 from fullpose_server.runtime.live.packets import Kind, encode_sample
+from fullpose_server.runtime.live.provenance import digest_of
 from fullpose_server.runtime.motion.generator import Mode, Motion
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.session.states import Event
@@ -59,7 +60,7 @@ LIVE = """
 live = LiveConfig(delay_ms=4.0)
 source = LiveSource(rig, live, 1e-3, open_links(RigPaths(folder), live), time.monotonic)
 before = compiled()  # a load is in the loop's time, too
-source.bind(source.ready(LiveSettings(sys.argv[2])))
+source.bind(source.ready(LiveSettings(sys.argv[2]), "a key"))
 link = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
 link.connect(str(folder / "live.sock"))
 source.begin(motion.x1, 0.0)
@@ -69,11 +70,12 @@ for k in range(400):
     now = k * 1e-3
     rates = (0.0, 20.0, 0.0) if k % 20 else ()
     if k % 10 == 0 and k < 300:
-        link.send(encode_sample(Kind.EULER, k, now, (40.0 * math.sin(now), 20.0 * now, 0.0), rates))
+        sample = encode_sample(Kind.EULER, k, now, (40.0 * math.sin(now), 20.0 * now, 0.0), rates)
+        link.send(sample + digest_of("a key"))
     source.poll(now)
     tick()
     source.reply(motion.x, 0.0, guard.margin, now)
-    done += source.heard
+    done += source.view().heard
 source.close()
 """
 PATH = """

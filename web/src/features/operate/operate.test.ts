@@ -65,6 +65,15 @@ describe("the command bar", () => {
     ]);
   });
 
+  it("keeps the key that loading a live source is answered, until another rig is operated", async () => {
+    const console = await inControl({}, { command: { live_key: "the-key" } });
+    const { operated } = console.stores;
+    await operated.command("load", { live: { method: "exact" } });
+    expect(operated.liveKey).toBe("the-key");
+    console.operate(session({ rig: "other" }));
+    expect(operated.liveKey).toBeNull();
+  });
+
   it("says what was refused", async () => {
     const console = await inControl({}, { command: new ApiError(409, "start is not allowed while running") });
     console.show(CommandBar, {});
