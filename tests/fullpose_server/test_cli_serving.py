@@ -1,7 +1,6 @@
 """`serve` and `demo` as processes: the address first, a flying rig, clear errors, an orderly end."""
 
 import json
-import os
 import signal
 import socket
 import time
@@ -41,25 +40,6 @@ def test_demo_prints_the_address_and_flies_a_real_flight(tmp_path: Path) -> None
         assert process.returncode == 0, errors
         assert "Traceback" not in errors
     assert not Path(f"/proc/{rig}").exists()
-
-
-def test_a_demo_whose_rig_faults_says_why_and_goes_on_by_itself(tmp_path: Path) -> None:
-    with running("demo", "--port", "0", "--data-dir", tmp_path) as (process, url):
-        assert process.stdout is not None
-        assert "planning" in process.stdout.readline()
-        assert "flying" in process.stdout.readline()
-        with httpx.Client(base_url=f"{url}/api/v1", timeout=60.0) as http:
-
-            def state() -> str:
-                return str(http.get("/rigs/vertical-4/session").json()["state"])
-
-            until(lambda: state() == "running")
-            rig = http.get("/health").json()["rigs"]["vertical-4"]["rig_pid"]
-            os.kill(rig, signal.SIGSTOP)
-            time.sleep(1.5)  # longer than its drive waits for a word
-            os.kill(rig, signal.SIGCONT)
-            assert "vertical-4 is faulted: " in process.stdout.readline()
-            until(lambda: state() == "running")
 
 
 def test_serve_ends_at_sigterm_and_two_servers_do_not_share_a_folder(tmp_path: Path) -> None:
