@@ -100,7 +100,7 @@ class Bench:
 
     def lease(self, action: str) -> None:
         """Take or renew it."""
-        given = self.answer(messages.Request(0, "lease", "bench", action=action, proof=PROOF)).lease
+        given = self.answer(messages.Request(0, messages.Op.LEASE, "bench", action=action, proof=PROOF)).lease
         if given is None:
             raise RuntimeError(action)
         self.epoch = given.epoch
@@ -109,7 +109,7 @@ class Bench:
         """One command that is to be carried out."""
         self.sequence += 1
         token = LeaseToken(self.epoch, self.sequence, PROOF)
-        reply = self.answer(messages.Request(0, "command", "bench", command, args, token, key=LIVE_KEY)).reply
+        reply = self.answer(messages.Request(0, messages.Op.COMMAND, "bench", command, args, token, key=LIVE_KEY)).reply
         if not reply.ok:
             raise RuntimeError(f"{command}: {reply}")
 

@@ -112,21 +112,21 @@ class MadeUpRig:
         """The fastest frame's measured rate [rad/s]."""
         return float(abs(self.parts.state.measured_rate).max())
 
-    def ask(self, op: str, command: str, args: dict[str, Any], action: str = "") -> messages.Answer:
+    def ask(self, op: messages.Op, command: str, args: dict[str, Any], action: str = "") -> messages.Answer:
         self.number += 1
         token = LeaseToken(self.epoch, self.sequence, PROOF)
         asked = messages.Request(self.number, op, "anna", command, args, token, action, None, PROOF, LIVE_KEY)
         return self.answer(asked)
 
     def take(self) -> None:
-        lease = self.ask("lease", "", {}, "take").lease
+        lease = self.ask(messages.Op.LEASE, "", {}, "take").lease
         assert lease is not None
         self.epoch = lease.epoch
         self.sequence = 0
 
     def say(self, command: str, **args: Any) -> messages.Reply:
         self.sequence += 1
-        return self.ask("command", command, args).reply
+        return self.ask(messages.Op.COMMAND, command, args).reply
 
     def must(self, command: str, **args: Any) -> None:
         reply = self.say(command, **args)
@@ -153,7 +153,7 @@ class MadeUpRig:
         if self.server_heard:
             header["server_beat_ns"] = self.clock.now
         if self.owner_heard and self.epoch and self.parts.state.ticks % 50 == 0:
-            self.ask("lease", "", {}, "renew")
+            self.ask(messages.Op.LEASE, "", {}, "renew")
         if self.source_heard and self.state is State.LIVE:
             sample = self.source(self.sent, self.sent / self.config.rate_hz)
             self.link.waiting.append((sample + digest_of(LIVE_KEY), "source"))

@@ -1,6 +1,7 @@
 """What server and rig process say to each other, and what the server tells the rest. JSON, one message a packet."""
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import Any
 
 import msgspec
@@ -11,12 +12,21 @@ from fullpose_server.session.lease import Lease, LeaseToken
 MAX_REQUEST = 1 << 16  # [bytes] what the rig process reads of a packet; of a longer one it would see a part
 
 
+class Op(StrEnum):
+    """What a request is about."""
+
+    COMMAND = "command"  # of the session
+    LEASE = "lease"
+    LIVE = "live"  # whether its key is that of the live source that is loaded
+    EXIT = "exit"
+
+
 @dataclass(frozen=True)
 class Request:
-    """Server to rig. `op` is command, lease, live or exit; fields that do not belong to it stay at their defaults."""
+    """Server to rig, numbered by who sends it. Fields that do not belong to `op` stay at their defaults."""
 
     id: int
-    op: str
+    op: Op
     who: str
     command: str = ""
     args: dict[str, Any] = field(default_factory=dict)
@@ -25,6 +35,11 @@ class Request:
     to: str | None = None
     proof: str | None = field(default=None, repr=False)  # of the lease's secret, or of the one that the action gives
     key: str | None = field(default=None, repr=False)  # of the live source: that `load` gives, or `live` shows
+
+    @property
+    def word(self) -> str:
+        """What is asked, for people."""
+        return self.command or self.action or self.op
 
 
 @dataclass(frozen=True)

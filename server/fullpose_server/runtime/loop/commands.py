@@ -9,6 +9,7 @@ from typing import Protocol, TypeAlias
 
 from fullpose_server.drives.base import DriveError
 from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract.messages import Op
 from fullpose_server.runtime.live.provenance import digest_of
 from fullpose_server.runtime.loop import orders
 from fullpose_server.runtime.loop.clock import Deadlines, seconds
@@ -61,25 +62,23 @@ class CommandHandler:
         lease = None
         error: messages.ErrorBody | None = None
         try:
-            if request.op == "command":
-                self._command(request, now)
-            elif request.op == "lease":
-                lease = self._lease(request, now)
-            elif request.op == "live":
-                self._check_key(request.key or "")
-            elif request.op == "exit":
-                self._exit(request.who, now)
-            else:
-                raise OrderError("bad_request", f"no request {request.op!r}: command, lease, live, exit")
+            match request.op:
+                case Op.COMMAND:
+                    self._command(request, now)
+                case Op.LEASE:
+                    lease = self._lease(request, now)
+                case Op.LIVE:
+                    self._check_key(request.key or "")
+                case Op.EXIT:
+                    self._exit(request.who, now)
         except SessionError as refusal:
             allowed = [str(c) for c in machine.allowed()]
-            word = request.command or request.action or request.op
-            error = messages.ErrorBody(refusal.code, str(refusal), machine.state, word, allowed)
-        if request.op == "command" or (request.op != "live" and request.action != LeaseAction.RENEW):
+            error = messages.ErrorBody(refusal.code, str(refusal), machine.state, request.word, allowed)
+        if request.op is not Op.LIVE and request.action != LeaseAction.RENEW:
             p.log.add(
                 "command",
                 who=request.who,
-                command=request.command or f"lease {request.action}",
+                command=f"lease {request.action}" if request.op is Op.LEASE else request.word,
                 args=request.args,
                 epoch=machine.epoch,
                 before=before,

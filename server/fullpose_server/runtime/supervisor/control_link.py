@@ -2,7 +2,7 @@
 
 import asyncio
 import itertools
-from typing import Any
+from dataclasses import replace
 
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.messages import MAX_REQUEST
@@ -32,19 +32,17 @@ class ControlLink:
         self.open_for_requests = True
         self._reader = asyncio.create_task(self._read(), name="rig control reader")
 
-    async def request(self, op: str, who: str, *, timeout_s: float, **rest: Any) -> messages.Answer:
-        """Send one request, `rest` being the fields of it that belong to `op`, and wait for its answer.
+    async def request(self, asked: messages.Request, *, timeout_s: float) -> messages.Answer:
+        """Send `asked` under a number of our own, and wait for its answer.
 
         Raises `RigUnreachableError`; TypeError on args not JSON and `RequestTooLargeError`, before anything is sent.
         """
         if not self.open_for_requests:
             raise RigUnreachableError("the rig process has closed the connection")
         number = next(self._numbers)
-        asked = messages.Request(number, op, who, **rest)
-        packet = messages.encode(asked)
+        packet = messages.encode(replace(asked, id=number))
         if len(packet) > MAX_REQUEST:
-            word = asked.command or asked.action or op
-            raise RequestTooLargeError(f"{word}: {len(packet)} bytes, expected at most {MAX_REQUEST}")
+            raise RequestTooLargeError(f"{asked.word}: {len(packet)} bytes, expected at most {MAX_REQUEST}")
         waiting: asyncio.Future[messages.Answer] = asyncio.get_running_loop().create_future()
         self._waiting[number] = waiting
         try:

@@ -165,7 +165,8 @@ class ProcessManager:
         while self._launcher.status(pid) is None and self._paths.running() == pid:
             # Refused while the rig moves, and answered with an E-stop: ask again when it is at rest.
             with contextlib.suppress(RigUnreachableError):
-                await (await self._link.current()).request("exit", "server", timeout_s=REPLY_S)
+                asked = messages.Request(0, messages.Op.EXIT, "server")
+                await (await self._link.current()).request(asked, timeout_s=REPLY_S)
             await asyncio.sleep(0.05)
             if time.monotonic() > deadline and not self._killed:
                 self._kill(" (it did not end when it was told)")

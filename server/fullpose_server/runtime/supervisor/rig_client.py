@@ -8,6 +8,7 @@ from typing import Any
 from fullpose.rig import Rig
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.contract.messages import Op, Request
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.contract.telemetry import Samples
@@ -77,23 +78,21 @@ class RigHost:
         """
         if command in (Command.STOP, Command.ESTOP):
             return await self.by_priority(Command(command), who)
-        before = self._view.state()
-        asked = {"command": command, "args": args, "lease": lease, "key": key}
-        return (await self._ask(before, command, "command", who, **asked)).reply
+        return (await self._ask(Request(0, Op.COMMAND, who, command, args, lease, key=key))).reply
 
     async def lease(self, action: LeaseAction, who: str, proof: str, to: str | None = None) -> Lease:
         """Do it under the proof of the lease's secret, or give the secret of `proof` (`GIVES_SECRET`).
 
         Raises `RefusedError` where it is refused.
         """
-        answer = await self._ask(self._view.state(), action, "lease", who, action=action, to=to, proof=proof)
+        answer = await self._ask(Request(0, Op.LEASE, who, action=action, to=to, proof=proof))
         if answer.reply.error is not None or answer.lease is None:
             raise RefusedError(answer.reply)
         return answer.lease
 
     async def prove_live(self, who: str, key: str) -> messages.Reply:
         """Whether `key` is that of the live source that is loaded: a refusal is a reply."""
-        return (await self._ask(self._view.state(), "live", "live", who, key=key)).reply
+        return (await self._ask(Request(0, Op.LIVE, who, key=key))).reply
 
     def estop(self, who: str) -> None:
         """E-stop, now: a flag in shared memory that the loop reads every tick. Never waits, never queues."""
@@ -161,13 +160,13 @@ class RigHost:
             raise HostError(f"{self.name}: no live source socket ({cause})") from cause
         return made
 
-    async def _ask(self, before: str, word: str, op: str, who: str, **rest: Any) -> messages.Answer:
-        view = self._view
+    async def _ask(self, asked: Request) -> messages.Answer:
+        view, before = self._view, self._view.state()
         if view.dead:
-            return messages.Answer(0, view.unreachable(before, word, "the rig process is not running"))
+            return messages.Answer(0, view.unreachable(before, asked.word, "the rig process is not running"))
         try:
-            timeout_s = LOAD_S if word == Command.LOAD else REPLY_S
-            answer = await (await self._link.current()).request(op, who, timeout_s=timeout_s, **rest)
+            timeout_s = LOAD_S if asked.command == Command.LOAD else REPLY_S
+            answer = await (await self._link.current()).request(asked, timeout_s=timeout_s)
         except RigUnreachableError as cause:
-            return messages.Answer(0, view.unreachable(before, word, str(cause)))
+            return messages.Answer(0, view.unreachable(before, asked.word, str(cause)))
         return replace(answer, reply=replace(answer.reply, revision=view.revision_of(answer.reply.revision)))

@@ -50,7 +50,7 @@ def client(paths: RigPaths) -> socket.socket:
 def send(to: socket.socket, number: int) -> bool:
     """Whether the socket took it."""
     try:
-        to.send(messages.encode(messages.Request(number, "command", "test", "load", {}, None, "", None)))
+        to.send(messages.encode(messages.Request(number, messages.Op.COMMAND, "test", "load")))
     except BlockingIOError:
         return False
     return True

@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 
 from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract.messages import MAX_REQUEST, Op
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.loop.control_server import ControlServer
-from fullpose_server.runtime.supervisor.control_link import MAX_REQUEST, ControlLink
+from fullpose_server.runtime.supervisor.control_link import ControlLink
 from fullpose_server.runtime.supervisor.errors import RequestTooLargeError
 
 PATIENCE_S = 60.0
@@ -48,12 +49,12 @@ async def linked(folder: Path) -> AsyncIterator[tuple[ControlLink, list[messages
 
 def filled(number: int, size: int) -> dict[str, Any]:
     """Arguments with which `load`, as request `number`, takes `size` bytes."""
-    empty = messages.encode(messages.Request(number, "command", "ann", "load", {"live": ""}, None, "", None))
+    empty = messages.encode(messages.Request(number, Op.COMMAND, "ann", "load", {"live": ""}))
     return {"live": "x" * (size - len(empty))}
 
 
 async def load(link: ControlLink, args: dict[str, Any]) -> messages.Answer:
-    return await link.request("command", "ann", timeout_s=PATIENCE_S, command="load", args=args)
+    return await link.request(messages.Request(0, Op.COMMAND, "ann", "load", args), timeout_s=PATIENCE_S)
 
 
 def test_a_request_of_the_greatest_size_is_read_whole(tmp_path: Path) -> None:
