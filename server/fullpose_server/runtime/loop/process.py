@@ -4,12 +4,10 @@ It is started by the server and outlives it.
 """
 
 import argparse
-import contextlib
 import faulthandler
 import logging
 import os
 import signal
-import subprocess
 import sys
 from dataclasses import replace
 from functools import partial
@@ -35,49 +33,13 @@ from fullpose_server.runtime.loop.control_server import ControlServer
 from fullpose_server.runtime.loop.drive_watch import DriveWatch
 from fullpose_server.runtime.loop.event_log import EventLog
 from fullpose_server.runtime.loop.leisure import Leisure
+from fullpose_server.runtime.loop.recorder_child import RecorderChild, WaitingRecorder
 from fullpose_server.runtime.loop.watched_drive import WatchedDrive
 from fullpose_server.runtime.motion.generator import Motion
 from fullpose_server.runtime.motion.limit_guard import Guard
 from fullpose_server.session.machine import SessionMachine
 
-_RECORDER = (sys.executable, "-m", "fullpose_server.runtime.recording.recorder")
 _LOCK_TRIES = 50
-_RECORDER_S = 10.0
-
-
-class RecorderChild:
-    """The recorder as a child of this process."""
-
-    def __init__(self, memory: Path, runs: Path, waiting: "WaitingRecorder | None") -> None:
-        self._memory, self._runs = memory, runs
-        self._process = start_recorder(memory, runs) if waiting is None else waiting.begin(memory, runs)
-
-    @property
-    def ended(self) -> bool:
-        """Whether it runs no more."""
-        return self._process.poll() is not None
-
-    def revive(self) -> int | None:
-        """Start it anew where it has ended: its process's number then, or None."""
-        if not self.ended:
-            return None
-        self._process = start_recorder(self._memory, self._runs)
-        return self._process.pid
-
-
-class WaitingRecorder:
-    """A recorder that has begun, and waits to be told what to record."""
-
-    def __init__(self) -> None:
-        self._process = subprocess.Popen([*_RECORDER, "--parent", str(os.getpid())], stdin=subprocess.PIPE)
-
-    def begin(self, memory: Path, runs: Path) -> "subprocess.Popen[bytes]":
-        """Tell it; it is a rig's from here on. One that has ended meanwhile is one that ended: it is started anew."""
-        orders = self._process.stdin
-        if orders is not None:
-            with contextlib.suppress(BrokenPipeError), orders:
-                orders.write(f"{memory}\n{runs}\n".encode())
-        return self._process
 
 
 def assemble(settings: config.RigConfig, drive: Drive, shared: Shared, live: LiveSource, ticks: Clock) -> Parts:
@@ -112,7 +74,7 @@ def main() -> int:
     return run(Path(told), spare) if told else 0
 
 
-def run(file: Path, waiting: "WaitingRecorder | None") -> int:
+def run(file: Path, waiting: WaitingRecorder | None) -> int:
     """Run the rig whose configuration is in `file`; returns the exit status."""
     settings = config.decode(file.read_bytes())
     if waiting is not None:
@@ -140,7 +102,7 @@ def run(file: Path, waiting: "WaitingRecorder | None") -> int:
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     recorder = RecorderChild(memory, settings.runs, waiting)
     prewarm.kernels(settings)
-    _wait_for(recorder, shared, ticks)
+    recorder.wait_for(shared, ticks)
     try:
         try:
             realtime = clock.go_realtime(settings.realtime_priority, settings.cpu)
@@ -175,27 +137,12 @@ def _end_at_once(paths: RigPaths, log: logging.Logger) -> None:
     os._exit(EXIT_HANGS)
 
 
-def start_recorder(memory: Path, runs: Path) -> "subprocess.Popen[bytes]":
-    """Start the recorder as a child of this process."""
-    command = [*_RECORDER, "--parent", str(os.getpid()), "--memory", str(memory), "--runs", str(runs)]
-    return subprocess.Popen(command, stdin=subprocess.DEVNULL)
-
-
 def _write_to(log: Path) -> None:
     """What this process writes goes there from now on."""
     with log.open("ab") as file, Path(os.devnull).open("rb") as nothing:
         os.dup2(nothing.fileno(), 0)
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
-
-
-def _wait_for(recorder: RecorderChild, shared: Shared, ticks: Clock) -> None:
-    """Wait for the recorder's first sign of life; without one the session will refuse to arm, and say why."""
-    deadline = clock.seconds(ticks) + _RECORDER_S
-    while clock.seconds(ticks) < deadline and not recorder.ended:
-        if int(shared.header["recorder_beat_ns"][0]):
-            return
-        ticks.sleep(0.01)
 
 
 def _lock(paths: RigPaths, ticks: Clock) -> int | None:
