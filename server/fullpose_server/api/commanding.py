@@ -1,4 +1,4 @@
-"""What every way to command a session shares: the priority channel of stop and E-stop, and the audit that follows."""
+"""What every way to command a session shares: its secrets, the priority channel of stop and E-stop, the audit."""
 
 import asyncio
 import secrets
@@ -8,7 +8,7 @@ from typing import Any
 from fullpose_server.api.deps import Services
 from fullpose_server.api.stopping import NOTHING_RUNS, audit_entry
 from fullpose_server.errors import FileError, NotFoundError
-from fullpose_server.formats.plan_folder import FORMAT, MAKE_AGAIN, rig_hash
+from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.session.errors import IllegalCommandError
 from fullpose_server.session.states import Command, State
@@ -32,14 +32,6 @@ def by_priority(services: Services, rig: str, command: Command, who: str) -> Cor
         return reply
 
     return replied()
-
-
-def plan_refusal(result: dict[str, Any]) -> str | None:
-    """Why a plan that was made cannot be flown, by what its row has of it; None where it can."""
-    if result and result.get("format") != FORMAT:
-        return f"it was made by an earlier Fullpose, whose hash does not cover all that moves the rig: {MAKE_AGAIN}"
-    refusal: str | None = result.get("refusal")
-    return refusal
 
 
 async def with_rig_file(services: Services, rig: str, args: dict[str, Any]) -> dict[str, Any]:

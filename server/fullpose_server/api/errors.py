@@ -11,9 +11,9 @@ from starlette.responses import Response
 from starlette.routing import Match, Mount
 
 from fullpose.errors import SolverError
+from fullpose_server.api.known_errors import known_problem
 from fullpose_server.api.problems import ApiError, problem_response, validation_problem
 from fullpose_server.api.schemas.base import Problem
-from fullpose_server.api.told import told
 from fullpose_server.errors import ServerError
 
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
@@ -37,7 +37,7 @@ def problem_of(error: Exception) -> Problem:
             return ApiError(error.status_code, "http", str(error.detail)).problem
         case RequestValidationError() | ValidationError():
             return validation_problem(error.errors())
-    problem = told(error)
+    problem = known_problem(error)
     if problem is None:
         log.error("unexpected error", exc_info=error)
         request = correlation_id.get()

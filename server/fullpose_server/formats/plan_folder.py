@@ -28,6 +28,7 @@ from fullpose_server.formats.plan_seal import arrays_sealed, facts_sealed, seal_
 
 FORMAT = 2  # 1: no such key, and a hash of the arrays alone
 MAKE_AGAIN = "make the plan again"
+EARLIER_FORMAT = f"made by an earlier Fullpose, whose hash does not cover all that moves the rig: {MAKE_AGAIN}"
 _ARRAYS = ("angles", "target", "error")
 _SEAL = ("plan_hash", "sealed")
 
@@ -200,7 +201,7 @@ def read_sealed_plan(folder: Path) -> PlanFolder:
     """
     info, path = _read_info(folder), folder / "plan.json"
     if info.format != FORMAT:
-        raise PlanFolderError(path, f"format {info.format}, no hash of all that moves the rig: {MAKE_AGAIN}")
+        raise PlanFolderError(path, f"format {info.format}, {EARLIER_FORMAT}")
     _check_seal(path, facts_sealed(info.facts), {k: v for k, v in info.sealed.items() if k not in _ARRAYS})
     if seal_hash(info.sealed) != info.plan_hash:
         raise PlanFolderError(path, f"plan_hash: not that of what is sealed: {MAKE_AGAIN}")

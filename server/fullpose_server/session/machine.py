@@ -95,14 +95,13 @@ class SessionMachine(Generic[L, M]):
             wanted = "a live source" if command is Command.GO_LIVE else "a plan"
             if self.binding.live != (command is Command.GO_LIVE):
                 raise NotReadyError("wrong_load", f"{command} needs {wanted} loaded: disarm, unload and load it")
-        if command is Command.ARM and self.alarms.unacknowledged:
-            codes = ", ".join(a.code for a in self.alarms.unacknowledged)
+        codes = ", ".join(alarm.code for alarm in self.alarms.unacknowledged)
+        if command is Command.ARM and codes:
             raise NotReadyError("standing_fault", f"a fault stands that nobody has acknowledged: {codes}")
         if command is Command.RESET:
             if self.moving:
                 raise NotReadyError("not_at_rest", "the rig is still braking: reset when it is at rest")
-            if self.alarms.unacknowledged:
-                codes = ", ".join(a.code for a in self.alarms.unacknowledged)
+            if codes:
                 raise NotReadyError("unacknowledged", f"acknowledge first: {codes}")
 
     # --- what is done ---

@@ -45,8 +45,8 @@ class WriteBehind(Generic[Item]):
             self._waiting[key] = item
             self._changed.notify_all()
 
-    def written(self, timeout_s: float) -> bool:
-        """Wait until all that was told before is written; False where it is not within the time."""
+    def written(self, timeout_s: float = 1.0) -> bool:
+        """Wait until all that was told before is written; False where it is not within the time: nothing can be."""
         with self._changed:
             return self._changed.wait_for(lambda: not self._waiting, timeout_s)
 

@@ -16,11 +16,11 @@ from pydantic import ValidationError
 
 from fullpose.rig import Rig
 from fullpose_server.api.attitudes import attitudes, limited_list
+from fullpose_server.api.known_errors import known_problem
 from fullpose_server.api.problems import ApiError, validation_problem
 from fullpose_server.api.schemas.plans import ReportOut
 from fullpose_server.api.schemas.solve import SolveIn, SolveOut
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
-from fullpose_server.api.told import told
 from fullpose_server.formats.flight_folder import write_flight
 from fullpose_server.formats.importers.columns import Bounds, check_rows
 from fullpose_server.formats.trajectory import Convention, Trajectory, from_columns
@@ -145,7 +145,7 @@ def failure(error: Exception, bound: int) -> dict[str, Any]:
     """The problem document of what went wrong, for `json`; `bound`: the memory there was [bytes]."""
     if isinstance(error, (MemoryError, SystemError)):  # the latter: an error that there was no memory to tell
         error = memory_needed(bound)
-    problem = told(error)
+    problem = known_problem(error)
     if problem is None:  # for the server to log
         return {"unexpected": f"{type(error).__name__}: {error}"}
     document: dict[str, Any] = json.loads(problem.model_dump_json())

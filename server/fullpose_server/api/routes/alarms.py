@@ -16,7 +16,6 @@ from fullpose_server.store.alarms import AlarmFilter, alarm_id
 from fullpose_server.store.keyset import Key
 from fullpose_server.store.tables import AlarmRow
 
-WRITTEN_S = 1.0
 router = APIRouter(prefix="/alarms", tags=["alarms"])
 _LIST = TypeAdapter(list[AlarmRecordOut])
 _FIELDS = tuple(name for name in AlarmRecordOut.model_fields if name != "standing")
@@ -52,7 +51,7 @@ async def list_alarms(
     wanted = replace(asked, ids=now if standing else None, but=now if standing is False else ())
 
     def read() -> list[AlarmRow]:
-        services.alarm_trail.written(WRITTEN_S)  # what was raised before is in it, unless nothing can be written
+        services.alarm_trail.written()
         return services.alarms.all(wanted, page.before, page.wanted)
 
     found = await asyncio.to_thread(read)

@@ -13,7 +13,6 @@ from fullpose_server.api.schemas.base import Cursor
 from fullpose_server.api.schemas.records import AuditOut
 from fullpose_server.store.tables import AuditRow
 
-WRITTEN_S = 1.0
 router = APIRouter(prefix="/audit", tags=["audit"])
 _LIST = TypeAdapter(list[AuditOut])
 
@@ -27,7 +26,7 @@ def list_audit(
     limit: Annotated[int, Query(ge=1, le=1000)] = ROWS,
 ) -> Response:
     """Every command, accepted or refused, newest first, a page at a time."""
-    services.trail.written(WRITTEN_S)  # what was done before is in it, unless nothing can be written
+    services.trail.written()
     found = services.audit.all(rig, before, limit + 1)
     rows = found[:limit]
     more = str(rows[-1].id) if len(found) > limit else None

@@ -18,12 +18,12 @@ from fullpose_server.api.errors import problem_of
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.live import (
+    STATUS_NAMES,
     LiveIn,
     LiveOpened,
     LiveProblem,
     LiveSampleIn,
     OpenLive,
-    SampleStatus,
 )
 from fullpose_server.api.schemas.session import LiveLoad
 from fullpose_server.api.stopping import answer
@@ -36,14 +36,6 @@ from fullpose_server.runtime.supervisor.rig_client import RigHost
 GONE = 4503
 router = APIRouter(tags=["live"])
 _INCOMING: TypeAdapter[LiveIn] = TypeAdapter(LiveIn)
-_NAMES: tuple[tuple[LiveStatus, SampleStatus], ...] = (
-    (LiveStatus.FOLLOWED, "followed"),
-    (LiveStatus.LIMITED, "limited"),
-    (LiveStatus.DROPPED, "dropped"),
-    (LiveStatus.IDLE, "idle"),
-    (LiveStatus.IMPLAUSIBLE, "implausible"),
-    (LiveStatus.UNPROVEN, "unproven"),
-)
 _KINDS = {
     ("nue", True): Kind.QUATERNION,
     ("ned", True): Kind.QUATERNION_NED,
@@ -195,7 +187,7 @@ def reply_json(reply: LiveReply, age_s: float | None) -> str:
         "type": "reply",
         "sequence": reply.sequence,
         "time_s": reply.time_s,
-        "status": [name for bit, name in _NAMES if reply.status & bit],
+        "status": [name for bit, name in STATUS_NAMES.items() if reply.status & bit],
         "angles_deg": reply.angles,
         "error_deg": reply.error_deg,
         "lag_deg": reply.lag_deg,

@@ -11,7 +11,6 @@ from pydantic import TypeAdapter
 
 from fullpose.registry import DEFAULT, REGISTRY, method_options, option_defaults
 from fullpose.rig import FRAMES
-from fullpose_server.api.commanding import plan_refusal
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
@@ -34,6 +33,7 @@ from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.start_pose import start_pose
 from fullpose_server.pages.thin import thin
 from fullpose_server.planning.plan_request import check_frame
+from fullpose_server.planning.plan_result import refusal_of
 from fullpose_server.planning.scrub import open_plan
 from fullpose_server.store.jobs import JobStatus
 from fullpose_server.store.keyset import Key
@@ -154,7 +154,7 @@ async def remove_plan(plan: str, services: ServicesDep) -> None:
 def _out(services: Services, row: PlanRow, name: str | None = None) -> PlanOut:
     name = services.trajectories.get(row.trajectory).name if name is None else name
     result: dict[str, Any] = row.result or {}
-    refusal = plan_refusal(result)
+    refusal = refusal_of(result)
     return PlanOut.model_validate(
         {
             "id": row.id,

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Response
 
-from fullpose_server.api.commanding import audit, by_priority, new_secret, plan_refusal, with_rig_file, without_process
+from fullpose_server.api.commanding import audit, by_priority, new_secret, with_rig_file, without_process
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.session import (
@@ -21,6 +21,7 @@ from fullpose_server.api.schemas.session import (
 )
 from fullpose_server.api.session_view import lease_out, session_out
 from fullpose_server.api.stopping import answer, refusal, status_of
+from fullpose_server.planning.plan_result import refusal_of
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.runtime.supervisor.errors import HostError, RefusedError, RequestTooLargeError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
@@ -165,7 +166,7 @@ async def _load_args(services: Services, rig: str, args: LoadArgs) -> dict[str, 
         why = f"plan {plan} is for rig {row.rig}, not {rig}"
     elif row.status != "done":
         why = f"plan {plan} is {row.status}"
-    elif (refused := plan_refusal(result)) is not None:
+    elif (refused := refusal_of(result)) is not None:
         why = f"plan {plan} cannot be flown: {refused}"
     if why is not None:
         raise ApiError(409, "not-flyable", why, state=services.hosts.state(rig), command="load")

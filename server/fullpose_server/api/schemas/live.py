@@ -4,15 +4,20 @@ A sample may also come as a binary message of 80 bytes, and is then answered by 
 (docs/guide/live.md). Several may come in one message.
 """
 
-from typing import Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from fullpose_server.api.schemas.base import Four, Number, Problem, Three, Wire, check_one
 from fullpose_server.api.schemas.session import LeaseToken, LiveLoad, Secret
+from fullpose_server.runtime.live.packets import LiveStatus
 from fullpose_server.session.states import State
 
-SampleStatus = Literal["followed", "limited", "dropped", "idle", "implausible", "unproven"]
+STATUS_NAMES = {int(status): str(status.name).lower() for status in LiveStatus}
+if TYPE_CHECKING:
+    SampleStatus = str
+else:
+    SampleStatus = Literal[*STATUS_NAMES.values()]
 
 
 class OpenLive(LiveLoad):

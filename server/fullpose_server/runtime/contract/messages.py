@@ -10,6 +10,7 @@ from fullpose_server.session.alarms import Alarm, Shelf
 from fullpose_server.session.lease import Lease, LeaseToken
 
 MAX_REQUEST = 1 << 16  # [bytes] what the rig process reads of a packet; of a longer one it would see a part
+INTERNAL_ERROR = "internal_error"  # code of the alarm with which a loop that failed ends
 
 
 class Op(StrEnum):

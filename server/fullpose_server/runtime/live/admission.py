@@ -19,7 +19,7 @@ class Verdict:
 
 
 class Admission:
-    """Weighs the samples of one rig's live source."""
+    """Weighs the samples of one rig's live source, and counts those that are not used."""
 
     def __init__(self, plausible: float) -> None:
         """plausible: the greatest body rate of a sample that is used [rad/s]."""
@@ -34,6 +34,11 @@ class Admission:
         self.implausible = 0
         self._source: tuple[int, Any] | None = None  # socket and sender that is followed
         self._source_at = 0.0  # [s] when it was heard
+
+    def unproved(self) -> Verdict:
+        """Of a sample that does not prove to be of the loaded source."""
+        self.unproven += 1
+        return Verdict(LiveStatus.UNPROVEN)
 
     def verdict(self, source: tuple[int, Any], rate: float, now: float) -> Verdict:
         """Of a sample of `source`, which is a socket and a sender, that turns the body at `rate` [rad/s]."""

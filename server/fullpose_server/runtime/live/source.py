@@ -183,8 +183,7 @@ class LiveSource:
                 if self._provenance.proves(data, sender):
                     verdict = self._verdict(sample, (each.fileno(), sender), now)
                 else:
-                    self._admission.unproven += 1
-                    verdict = Verdict(LiveStatus.UNPROVEN)
+                    verdict = self._admission.unproved()
                 self._waiting.append(Taken(sample, verdict, self._monotonic(), each, sender))
 
     def _verdict(self, sample: LiveSample, source: tuple[int, Any], now: float) -> Verdict:
@@ -290,7 +289,7 @@ class LiveSource:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Samples accepted, dropped (late or doubled), bad (no sample at all), implausible, and steps of the clock."""
+        """Samples accepted, dropped (late or doubled), bad (none at all), implausible, unproven; steps of the clock."""
         b = self._buffer
         told = {"accepted": b.accepted, "dropped": b.dropped, "bad": self.bad, "clock_steps": b.steps}
         return told | {"implausible": self._admission.implausible, "unproven": self._admission.unproven}

@@ -26,6 +26,7 @@ from fullpose_server.session.run_end import Ending, RunEnd
 from fullpose_server.session.states import Command, State
 
 Given: TypeAlias = GivenOf[Load, PointMove]
+_ESTOP = "estop"  # code of its alarm
 _AT_ONCE = (Command.STOP, Command.ESTOP)  # need neither lease nor arguments
 
 
@@ -102,9 +103,11 @@ class CommandHandler:
 
     def _at_once(self, command: Command, who: str, now: float) -> None:
         ordered = self._parts.machine.command(command, who, None, now)
-        self._executor.ends(Ending(RunEnd.ESTOP, "estop") if command is Command.ESTOP else Ending(RunEnd.STOPPED))
         if command is Command.ESTOP:
-            self._executor.alarm("estop", Severity.EMERGENCY, f"E-stop by {who or 'an unnamed operator'}")
+            self._executor.ends(Ending(RunEnd.ESTOP, _ESTOP))
+            self._executor.alarm(_ESTOP, Severity.EMERGENCY, f"E-stop by {who or 'an unnamed operator'}")
+        else:
+            self._executor.ends(Ending(RunEnd.STOPPED))
         self._executor.do(ordered)
 
     def terminate(self) -> None:

@@ -6,6 +6,7 @@ what they found, the executor does what follows. Nothing blocks but what the ses
 
 import numpy as np
 
+from fullpose_server.runtime.contract.messages import INTERNAL_ERROR
 from fullpose_server.runtime.loop.caretaker import Caretaker
 from fullpose_server.runtime.loop.clock import Deadlines, seconds
 from fullpose_server.runtime.loop.commands import CommandHandler, Serve
@@ -52,8 +53,8 @@ class ControlLoop:
         except BaseException as cause:
             # A fault of ours: nothing is commanded any more, so the drive brakes by itself; the last words say why.
             self._p.drive.brake()
-            self._executor.alarm("internal_error", Severity.FAULT, f"{type(cause).__name__}: {cause}")
-            self._executor.ends(Ending(RunEnd.FAULT, "internal_error"))
+            self._executor.alarm(INTERNAL_ERROR, Severity.FAULT, f"{type(cause).__name__}: {cause}")
+            self._executor.ends(Ending(RunEnd.FAULT, INTERNAL_ERROR))
             self._publisher.record(self._p.clock.monotonic_ns(), 0, 0)  # the tick that failed
             self._executor.end_run()
             self._publisher.publish()

@@ -17,7 +17,7 @@ from fullpose.rig import FRAMES
 from fullpose_server.drives.base import DriveError
 from fullpose_server.runtime.loop.clock import seconds
 from fullpose_server.runtime.loop.context import Parts
-from fullpose_server.runtime.loop.monitors import Monitors, Violation, said
+from fullpose_server.runtime.loop.monitors import SOURCE_LOST, Monitors, Violation, said
 from fullpose_server.runtime.loop.orders import Load
 from fullpose_server.runtime.motion.limit_guard import Finding
 from fullpose_server.runtime.motion.point_to_point import PointMove
@@ -47,7 +47,7 @@ class Executor:
         if machine.state is not before:
             self._parts.log.add("transition", before=before, after=machine.state, trigger=str(event))
         if event is Event.SOURCE_LOST and machine.state is not before:
-            self.ends(Ending(RunEnd.SOURCE_LOST, "live_source_lost"))
+            self.ends(Ending(RunEnd.SOURCE_LOST, SOURCE_LOST))
         if event is Event.AT_REST:
             self.rest()
 

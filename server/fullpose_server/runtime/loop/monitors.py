@@ -17,6 +17,7 @@ from fullpose_server.runtime.loop.watched_drive import DriveFailure
 from fullpose_server.runtime.motion.limit_guard import Finding, Guard
 from fullpose_server.session.states import Event
 
+SOURCE_LOST = "live_source_lost"  # code of its warning
 # As plain numbers: flags make an object of every "and", and this is asked a thousand times a second.
 _LINK_LOST, _STALE_WRITE = int(Status.LINK_LOST), int(Status.STALE_WRITE)
 _BROKEN = int(Status.FAULT | Status.ENCODER | Status.WATCHDOG)
@@ -216,5 +217,5 @@ class Monitors:
             found.append(Violation(Finding("live_implausible_rate", False, text, None, value, limit, "deg/s")))
         if lost:
             text = f"no sample of the live source for {live.age_ms:.0f} ms"
-            found.append(Violation(Finding("live_source_lost", False, text, None, live.age_ms, math.nan, "ms")))
+            found.append(Violation(Finding(SOURCE_LOST, False, text, None, live.age_ms, math.nan, "ms")))
         return found

@@ -234,7 +234,7 @@ def _loss(last: messages.Published, code: int | None, killed: str) -> str:
     how = ""
     if code is not None:
         how = f" (signal {-code})" if code < 0 else f" (exit status {code})"
-    why = killed or "".join(f" ({a.message})" for a in last.alarms if a.code in ("internal_error", HANGS))
+    why = killed or "".join(f" ({a.message})" for a in last.alarms if a.code in (messages.INTERNAL_ERROR, HANGS))
     return f"the rig process died{how}{why} while {last.state}; the drive brakes by its own watchdog"
 
 

@@ -9,7 +9,7 @@ from fullpose_server.errors import DamagedError, FileError, NotFoundError, Stora
 from fullpose_server.formats.importers.columns import TooLargeError
 
 
-def told(error: Exception) -> Problem | None:
+def known_problem(error: Exception) -> Problem | None:
     """The document of an error; None for one that nobody planned for."""
     match error:
         case ApiError():
