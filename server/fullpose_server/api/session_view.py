@@ -5,10 +5,10 @@ from dataclasses import asdict
 from typing import Any
 
 from fullpose_server.api.schemas.base import Four
+from fullpose_server.api.schemas.lease import LeaseOut
 from fullpose_server.api.schemas.session import (
     AlarmOut,
     DriveTimes,
-    LeaseOut,
     LiveOut,
     PlanRef,
     RecorderOut,

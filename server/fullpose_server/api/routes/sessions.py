@@ -9,13 +9,12 @@ from fastapi import APIRouter, Body, Response
 from fullpose_server.api.commanding import audit, by_priority, new_secret, with_rig_file, without_process
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
+from fullpose_server.api.schemas.lease import LeaseGiven, LeaseIn
 from fullpose_server.api.schemas.session import (
     AlarmOut,
     CommandDone,
     CommandIn,
     CommandOut,
-    LeaseGiven,
-    LeaseIn,
     LoadArgs,
     SessionOut,
 )

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fullpose_server.api.schemas.base import Four, Number, Problem, Three, Wire, check_one
-from fullpose_server.api.schemas.session import LeaseToken, LiveLoad, Secret
+from fullpose_server.api.schemas.lease import LeaseToken, Secret
+from fullpose_server.api.schemas.session import LiveLoad
 from fullpose_server.runtime.live.packets import LiveStatus
 from fullpose_server.session.states import State
 

@@ -1,4 +1,4 @@
-"""The session on the wire: commands as a tagged union, the lease, the snapshot.
+"""The session on the wire: commands as a tagged union, the snapshot.
 
 Its words are the session's own (`session.states`, `session.alarms`): the models are made from them.
 """
@@ -8,28 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
 from pydantic import Field, create_model, model_validator
 
 from fullpose_server.api.schemas.base import Four, FrameName, Number, Options, Ordinal, Wire, Word, check_one
+from fullpose_server.api.schemas.lease import LeaseOut, LeaseToken
 from fullpose_server.session.alarms import MAX_SHELF_S, Severity
-from fullpose_server.session.lease import GIVES_SECRET, LeaseAction, proof_of
-from fullpose_server.session.lease import LeaseToken as Token
 from fullpose_server.session.states import Command, State
-
-Secret = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,128}$")]
-if TYPE_CHECKING:
-    ActionName = LeaseAction
-else:
-    ActionName = Literal[*LeaseAction]
-
-
-class LeaseToken(Wire):
-    """Proof of holding the lease: its secret, its epoch, and a sequence that grows with every command."""
-
-    epoch: Ordinal
-    sequence: Ordinal
-    secret: Secret = Field(repr=False)
-
-    def shown(self) -> Token:
-        """What the session is shown of it."""
-        return Token(self.epoch, self.sequence, proof_of(self.secret))
 
 
 class NoArgs(Wire):
@@ -161,46 +142,6 @@ class CommandDone(CommandOut):
         default=None,
         repr=False,
         description="Of load with live: what the source proves itself by, told here once; a later load gives another",
-    )
-
-
-class LeaseIn(Wire):
-    """take: when free or silent; takeover: by force, audited; request: ask the holder. Each answers a secret.
-
-    Under the lease's secret: renew; grant: hand over to who asked; release: give it up.
-    """
-
-    action: ActionName = LeaseAction.TAKE
-    secret: Secret | None = Field(default=None, repr=False, description="The lease's; with renew, grant and release")
-    to: str | None = Field(
-        default=None, max_length=128, description="With grant: who of those who asked; null: the first"
-    )
-
-    @model_validator(mode="after")
-    def _its_secret(self) -> Self:
-        if (self.secret is None) != (self.action in GIVES_SECRET):
-            words = ", ".join(sorted(set(LeaseAction) - GIVES_SECRET))
-            raise ValueError(f"expected the lease's secret with {words}, and with nothing else")
-        return self
-
-
-class LeaseOut(Wire):
-    """Who may command. `epoch` grows with every new holder; each command's sequence must be above `sequence`."""
-
-    holder: str | None
-    epoch: int
-    sequence: int
-    expires_s: float | None = Field(description="Until the holder counts as silent: the rig holds, stops, disarms")
-    requested_by: list[str]
-
-
-class LeaseGiven(LeaseOut):
-    """The lease after an action. `secret` is the caller's alone: it is told here once, and nowhere else."""
-
-    secret: str | None = Field(
-        default=None,
-        repr=False,
-        description="With take and takeover: the lease's. With request: the lease's once it is granted to the caller",
     )
 
 
