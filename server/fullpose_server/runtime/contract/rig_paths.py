@@ -43,12 +43,17 @@ class RigPaths:
             return None
         return fd
 
+    def held(self) -> bool:
+        """Whether a process has the lock: it is the rig's, ready or not."""
+        fd = self.take_lock() if self.lock.exists() else None
+        if fd is not None:
+            os.close(fd)
+            return False
+        return self.lock.exists()
+
     def running(self) -> int | None:
         """The pid of the rig process that holds the lock and is ready; None where there is none."""
-        fd = self.take_lock() if self.lock.exists() else None
-        if fd is not None or not self.lock.exists():
-            if fd is not None:
-                os.close(fd)
+        if not self.held():
             return None
         try:
             return int(json.loads(self.notes.read_text("utf-8"))["pid"])

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 import os
 import signal
 import time
@@ -15,6 +16,9 @@ from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.spare import Spare, spawned
 
 START_S = 180.0  # with no kernel in the cache, compiling takes most of it
+_ORDERS_S = 15.0  # for the one in reserve to take its orders: it may be still getting ready
+
+log = logging.getLogger(__name__)
 
 
 class Launcher:
@@ -30,8 +34,8 @@ class Launcher:
         """Start a process with `config`; returns its pid when it is ready. Raises `HostError`."""
         self._paths.notes.unlink(missing_ok=True)
         await asyncio.to_thread(durable.write, self._paths.config, configs.encode(config))
-        child = self._child = self._spare_taken() or self._started()
-        self._ended = None
+        await self._begun()
+        child = self._child
         deadline = time.monotonic() + START_S
         while time.monotonic() < deadline:
             if self.status(child) is not None:
@@ -71,8 +75,27 @@ class Launcher:
             _, status = await asyncio.to_thread(os.waitpid, pid, 0)
             self._ended = os.waitstatus_to_exitcode(status)
 
-    def _spare_taken(self) -> int:
-        return 0 if self._spare is None else self._spare.take(self._paths)
+    async def _begun(self) -> None:
+        """Start a process: the one in reserve, or another where that does not take its orders."""
+        self._ended = None
+        self._child = 0 if self._spare is None else self._spare.take(self._paths)
+        if self._child and not await self._obeys(self._child):
+            log.warning("the rig process in reserve does nothing: it is ended, and another started")
+            if self.status(self._child) is None:
+                os.kill(self._child, signal.SIGKILL)
+                await self.reaped(self._child)
+            self._child, self._ended = 0, None
+        if not self._child:
+            self._child = self._started()
+
+    async def _obeys(self, child: int) -> bool:
+        """Whether it has begun to be the rig's: it takes the rig's lock."""
+        deadline = time.monotonic() + _ORDERS_S
+        while not self._paths.held():
+            if self.status(child) is not None or time.monotonic() > deadline:
+                return False
+            await asyncio.sleep(0.02)
+        return True
 
     def _started(self) -> int:
         with self._paths.log.open("ab") as log, Path(os.devnull).open("rb") as nothing:

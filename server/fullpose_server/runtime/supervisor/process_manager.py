@@ -23,7 +23,7 @@ from fullpose_server.runtime.contract.shared_memory import Shared, SharedError
 from fullpose_server.runtime.supervisor.control_link import StandingLink
 from fullpose_server.runtime.supervisor.errors import HostError, RigUnreachableError
 from fullpose_server.runtime.supervisor.heartbeat import Heartbeat
-from fullpose_server.runtime.supervisor.launcher import Launcher
+from fullpose_server.runtime.supervisor.launcher import START_S, Launcher
 from fullpose_server.runtime.supervisor.process_view import ProcessView
 from fullpose_server.runtime.supervisor.running import RunningProcess, RunningProcesses
 from fullpose_server.runtime.supervisor.spare import Spare
@@ -85,7 +85,7 @@ class ProcessManager:
     async def start(self) -> None:
         """Spawn or adopt the process. Raises `HostError` where it does not come up."""
         self._paths.prepare()
-        pid = self._paths.running()
+        pid = await self._there()
         self._adopted = pid is not None
         if pid is None:
             pid = await self._launcher.spawn(self._config)
@@ -95,6 +95,18 @@ class ProcessManager:
         self._heartbeat = Heartbeat(self._view, self._config.name)
         self._watch = asyncio.create_task(self._watch_on(), name=f"watch {self._config.name}")
         self._watch.add_done_callback(self._watch_ended)
+
+    async def _there(self) -> int | None:
+        """The process that is there already; one that an earlier server has started, and that gets ready, is awaited.
+
+        A second beside it could only end at its lock, and would have taken its notes and configuration away.
+        """
+        deadline = time.monotonic() + START_S
+        while (pid := self._paths.running()) is None and self._paths.held():
+            if time.monotonic() > deadline:
+                raise HostError(f"a process has the lock of {self._config.name}, and is not ready in {START_S:g} s")
+            await asyncio.sleep(0.02)
+        return pid
 
     async def close(self, *, stop_rig: bool) -> None:
         """Let go of the process; with `stop_rig` end it: E-stop if it moves, then exit."""

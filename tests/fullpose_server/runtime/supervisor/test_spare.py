@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from fullpose_server.runtime.contract.hung import suspended as is_suspended
 from fullpose_server.runtime.contract.rig_paths import RigPaths
+from fullpose_server.runtime.supervisor import launcher
 from fullpose_server.runtime.supervisor import spare as module
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.runtime.supervisor.spare import Spare
@@ -38,6 +40,10 @@ asyncio.run(main())
 @pytest.fixture(autouse=True)
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "AFTER_S", 0.0)
+
+
+def exists(pid: int) -> bool:
+    return Path(f"/proc/{pid}").exists()
 
 
 @asynccontextmanager
@@ -94,6 +100,55 @@ def test_a_spare_that_has_died_is_passed_over(tmp_path: Path) -> None:
     asyncio.run(fly())
 
 
+def test_a_spare_that_has_died_is_made_anew(tmp_path: Path) -> None:
+    async def fly() -> None:
+        async with rig_with_spare(tmp_path) as (_, spare):
+            dead = spare.pid
+            os.kill(dead, signal.SIGKILL)
+            await soon(lambda: spare.pid not in (0, dead))
+            assert not exists(dead)
+
+    asyncio.run(fly())
+
+
+def test_a_spare_that_is_suspended_is_ended_and_holds_no_rig_up(tmp_path: Path) -> None:
+    async def fly() -> None:
+        async with rig_with_spare(tmp_path) as (host, spare):
+            suspended = spare.pid
+            os.kill(suspended, signal.SIGSTOP)
+            await soon(lambda: is_suspended(suspended))
+            assert await replaced(host) != suspended
+            assert not exists(suspended)
+
+    asyncio.run(fly())
+
+
+def test_a_spare_that_does_not_take_its_orders_is_ended_and_another_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(launcher, "_ORDERS_S", 0.1)
+    deaf = subprocess.Popen(["sleep", "3600"])
+
+    class Deaf(Spare):
+        def take(self, paths: RigPaths) -> int:  # noqa: ARG002
+            return deaf.pid
+
+    async def fly() -> None:
+        host = RigHost(config_of(tmp_path), None, Deaf())
+        await host.start()
+        try:
+            assert host.snapshot().health.rig_alive
+            assert not exists(deaf.pid)
+        finally:
+            await host.close(stop_rig=True)
+
+    try:
+        asyncio.run(fly())
+    finally:
+        deaf.kill()
+        deaf.wait()
+
+
 def test_it_ends_with_the_server_and_with_its_close(tmp_path: Path) -> None:
     server = subprocess.Popen([sys.executable, "-c", SERVER], stdout=subprocess.PIPE)
     assert server.stdout is not None
@@ -101,7 +156,7 @@ def test_it_ends_with_the_server_and_with_its_close(tmp_path: Path) -> None:
     server.kill()
     server.wait()
     server.stdout.close()
-    until(lambda: not Path(f"/proc/{pid}").exists())
+    until(lambda: not exists(pid))
 
     async def closed() -> int:
         spare = Spare()
@@ -110,4 +165,4 @@ def test_it_ends_with_the_server_and_with_its_close(tmp_path: Path) -> None:
         spare.close()
         return made
 
-    assert not Path(f"/proc/{asyncio.run(closed())}").exists()
+    assert not exists(asyncio.run(closed()))
