@@ -19,6 +19,8 @@ from fullpose_server.runtime.loop.clock import Clock
 
 log = logging.getLogger("fullpose.rig")
 _FAULT = int(Status.FAULT)
+_LONGEST = 300
+_ERRORS = (Exception, SystemExit, KeyboardInterrupt)  # a driver that ends the program ends no loop
 
 
 class DriveFailure(NamedTuple):
@@ -64,7 +66,7 @@ class WatchedDrive:
             self._drive.connect(now)
         except DriveError as cause:
             raise DriveError(f"{cause} (connect took {self._took(begun):.3g} ms)") from cause
-        except Exception as cause:
+        except _ERRORS as cause:
             raise DriveError(self._told(DriveCall.CONNECT, begun, cause)) from cause
         finally:
             self._end(begun)
@@ -78,7 +80,7 @@ class WatchedDrive:
             self._drive.enable()
         except DriveError as cause:
             raise DriveError(f"{cause} (enable took {self._took(begun):.3g} ms)") from cause
-        except Exception as cause:
+        except _ERRORS as cause:
             raise DriveError(self._told(DriveCall.ENABLE, begun, cause)) from cause
         finally:
             self._end(begun)
@@ -88,8 +90,8 @@ class WatchedDrive:
         self.write_ns = None
         begun = self._begin(DriveCall.READ)
         try:
-            status = self._drive.read(now, position, rate)
-        except Exception as cause:  # noqa: BLE001 - a driver's errors are its own; the loop goes on to brake
+            status = _bits(self._drive.read(now, position, rate))
+        except _ERRORS as cause:  # a driver's errors are its own; the loop goes on to brake
             self._fails(DriveCall.READ, begun, cause)
             position.fill(math.nan)
             rate.fill(math.nan)
@@ -107,7 +109,7 @@ class WatchedDrive:
         try:
             self._drive.write(position, rate, acceleration, epoch, sequence)
             self._failing.discard(DriveCall.WRITE)
-        except Exception as cause:  # noqa: BLE001 - as above
+        except _ERRORS as cause:
             self._fails(DriveCall.WRITE, begun, cause)
         finally:
             self.write_ns = self._end(begun)
@@ -203,28 +205,43 @@ class WatchedDrive:
         try:
             order()
             self._failing.discard(call)
-        except Exception as cause:  # noqa: BLE001 - as above
+        except _ERRORS as cause:
             self._fails(call, begun, cause)
         finally:
             self._end(begun)
 
-    def _fails(self, call: DriveCall, begun: int, cause: Exception) -> None:
+    def _fails(self, call: DriveCall, begun: int, cause: BaseException) -> None:
         if call in self._failing:
             return
         self._failing.add(call)
         took = self._clock.monotonic_ns() - begun
         self._failure = DriveFailure(call, took, self._told(call, begun, cause))
 
-    def _told(self, call: DriveCall, begun: int, cause: Exception) -> str:
+    def _told(self, call: DriveCall, begun: int, cause: BaseException) -> str:
         """What is said of it; its traceback is in the log."""
-        raised = f"{type(cause).__name__}: {cause}"
-        text = f"drive {self.name}: {call.word} raised {raised} (after {self._took(begun):.3g} ms)"
+        text = f"drive {self.name}: {call.word} raised {_words(cause)} (after {self._took(begun):.3g} ms)"
         log.error("%s", text, exc_info=cause)
         return text
 
     def _took(self, begun: int) -> float:
         """[ms]."""
         return (self._clock.monotonic_ns() - begun) / 1e6
+
+
+def _bits(status: object) -> int:
+    """What `read` returned. Raises TypeError where it is no number of bits."""
+    if not isinstance(status, (int, np.integer)):
+        raise TypeError(f"it returned {status!r}, expected Status bits")
+    return int(status)
+
+
+def _words(cause: BaseException) -> str:
+    """Of an error, whatever a driver has put into it: at most `_LONGEST` characters that can be sent on."""
+    try:
+        text = f"{type(cause).__name__}: {cause}"
+    except Exception:  # noqa: BLE001 - its text is a driver's too
+        text = type(cause).__name__
+    return text.encode("utf-8", "replace").decode()[:_LONGEST]
 
 
 def _measured(header: NDArray[np.void], what: str, took_ns: int) -> None:

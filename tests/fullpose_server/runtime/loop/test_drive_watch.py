@@ -154,3 +154,49 @@ def test_what_a_call_raises_is_a_fault_with_its_time(watched: Watched, monkeypat
     monkeypatch.setattr(watched.table, "connect", broken)
     with pytest.raises(DriveError, match=r"connect raised OSError: \[Errno 5\] gone \(after 3 ms\)"):
         watched.drive.connect(0.0)
+
+
+@pytest.mark.parametrize("status", [None, "ok", 1.0, [1]])
+def test_a_read_that_does_not_return_bits_is_a_fault_too(
+    watched: Watched, monkeypatch: pytest.MonkeyPatch, status: object
+) -> None:
+    monkeypatch.setattr(watched.table, "read", lambda *_: status)
+    position = np.zeros(4)
+    assert watched.drive.read(0.0, position, np.zeros(4)) == Status.FAULT
+    assert np.isnan(position).all()
+    failure = watched.drive.failure()
+    assert failure is not None
+    assert f"read raised TypeError: it returned {status!r}, expected Status bits" in failure.cause
+
+
+class UntoldError(Exception):
+    def __str__(self) -> str:
+        raise ValueError
+
+
+@pytest.mark.parametrize(
+    ("cause", "told"),
+    [
+        (SystemExit(3), "SystemExit: 3"),
+        (KeyboardInterrupt(), "KeyboardInterrupt: "),
+        (UntoldError(), "UntoldError"),
+        (OSError("\udcff"), "OSError: ?"),
+        (OSError("x" * 100_000), f"OSError: {'x' * 291}"),
+    ],
+)
+@pytest.mark.parametrize("call", ["read", "write"])
+def test_whatever_a_call_raises_ends_no_loop_and_can_be_told(
+    watched: Watched, monkeypatch: pytest.MonkeyPatch, call: str, cause: BaseException, told: str
+) -> None:
+    def raises(*_: object) -> int:
+        raise cause
+
+    monkeypatch.setattr(watched.table, call, raises)
+    numbers = np.zeros(4), np.zeros(4)
+    if call == "read":
+        assert watched.drive.read(0.0, *numbers) == Status.FAULT
+    else:
+        watched.drive.write(*numbers, np.zeros(4), 1, 1)
+    failure = watched.drive.failure()
+    assert failure is not None
+    assert f"{call} raised {told} (after" in failure.cause
