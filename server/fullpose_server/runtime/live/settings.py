@@ -9,6 +9,8 @@ import msgspec
 
 from fullpose_server.runtime.live.provenance import Address
 
+_LAST_PORT = 65535
+
 
 @dataclass(frozen=True)
 class LiveSettings:
@@ -32,10 +34,13 @@ class LiveSettings:
             return None
         host, _, port = self.udp_from.rpartition(":")
         try:
-            return Address(str(ipaddress.IPv4Address(host)), int(port))
+            address = Address(str(ipaddress.IPv4Address(host)), int(port))
+            if not 0 < address.port <= _LAST_PORT:
+                raise ValueError(address.port)
         except ValueError:
             expected = "expected an IPv4 address and a port, 127.0.0.1:7461"
             raise LiveError(f"udp_from {self.udp_from!r}: {expected}") from None
+        return address
 
 
 class LiveError(Exception):

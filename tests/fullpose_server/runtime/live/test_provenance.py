@@ -60,6 +60,6 @@ def test_by_udp_the_named_address_proves() -> None:
 def test_an_address_is_read_or_refused() -> None:
     assert LiveSettings(udp_from="127.0.0.1:7461").address == HERE
     assert LiveSettings().address is None
-    for wrong in ("7461", "localhost:7461", "127.0.0.1", "127.0.0.1:", "1.2.3:4"):
+    for wrong in ("127.0.0.1:99999", "127.0.0.1:0", "7461", "localhost:7461", "127.0.0.1", "127.0.0.1:", "1.2.3:4"):
         with pytest.raises(LiveError, match="expected an IPv4 address and a port"):
             _ = LiveSettings(udp_from=wrong).address
