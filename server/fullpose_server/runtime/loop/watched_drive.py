@@ -54,6 +54,7 @@ class WatchedDrive:
         self._owed: DriveCall | None = None  # what the watch's thread would have asked of a drive that hung
         self._failure: DriveFailure | None = None
         self._failing: set[DriveCall] = set()
+        self._lend()
 
     # --- as the loop calls it ---
 
@@ -90,7 +91,9 @@ class WatchedDrive:
         self.write_ns = None
         begun = self._begin(DriveCall.READ)
         try:
-            status = _bits(self._drive.read(now, position, rate))
+            self._position[:], self._rate[:] = position, rate
+            status = _bits(self._drive.read(now, self._position, self._rate))
+            position[:], rate[:] = self._position, self._rate
         except _ERRORS as cause:  # a driver's errors are its own; the loop goes on to brake
             self._fails(DriveCall.READ, begun, cause)
             position.fill(math.nan)
@@ -107,7 +110,9 @@ class WatchedDrive:
         """See `Drive`."""
         begun = self._begin(DriveCall.WRITE)
         try:
-            self._drive.write(position, rate, acceleration, epoch, sequence)
+            demand, demand_rate, demand_acceleration = self._demand
+            demand[:], demand_rate[:], demand_acceleration[:] = position, rate, acceleration
+            self._drive.write(demand, demand_rate, demand_acceleration, epoch, sequence)
             self._failing.discard(DriveCall.WRITE)
         except _ERRORS as cause:
             self._fails(DriveCall.WRITE, begun, cause)
@@ -210,7 +215,12 @@ class WatchedDrive:
         finally:
             self._end(begun)
 
+    def _lend(self) -> None:
+        """Arrays of the drive's own: what it does to them, later or to their shape, does nothing to the loop's."""
+        self._position, self._rate, *self._demand = np.zeros((5, 4))
+
     def _fails(self, call: DriveCall, begun: int, cause: BaseException) -> None:
+        self._lend()
         if call in self._failing:
             return
         self._failing.add(call)

@@ -200,3 +200,54 @@ def test_whatever_a_call_raises_ends_no_loop_and_can_be_told(
     failure = watched.drive.failure()
     assert failure is not None
     assert f"{call} raised {told} (after" in failure.cause
+
+
+def test_what_a_drive_does_to_its_arrays_does_nothing_to_the_loops(
+    watched: Watched, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept: list[Array] = []
+
+    def read(_now: float, position: Array, rate: Array) -> int:
+        position[:], rate[:] = 1.0, 2.0
+        kept.extend((position, rate))
+        return int(Status.ENABLED)
+
+    def write(*arrays: Array | int) -> None:
+        for demand in arrays[:3]:
+            assert isinstance(demand, np.ndarray)
+            demand *= 57.0  # degrees, say: in place
+
+    monkeypatch.setattr(watched.table, "read", read)
+    monkeypatch.setattr(watched.table, "write", write)
+    position, rate, acceleration = np.zeros(4), np.zeros(4), np.full(4, 3.0)
+    assert watched.drive.read(0.0, position, rate) == Status.ENABLED
+    for each in kept:
+        each[:] = 99.0
+    watched.drive.write(position, rate, acceleration, 1, 1)
+    assert watched.drive.failure() is None
+    assert [each.tolist() for each in (position, rate, acceleration)] == [[1.0] * 4, [2.0] * 4, [3.0] * 4]
+
+
+def reshaped(_now: float, position: Array, _rate: Array) -> int:
+    position.resize((3,), refcheck=False)
+    return 0
+
+
+def locked(_now: float, position: Array, _rate: Array) -> int:
+    position.setflags(write=False)
+    return 0
+
+
+@pytest.mark.parametrize("read", [reshaped, locked])
+def test_one_that_spoils_its_arrays_is_a_fault_and_is_given_others(
+    watched: Watched, monkeypatch: pytest.MonkeyPatch, read: object
+) -> None:
+    monkeypatch.setattr(watched.table, "read", read)
+    position, rate = np.zeros(4), np.zeros(4)
+    statuses = [watched.drive.read(0.0, position, rate) for _ in range(2)]
+    assert Status.FAULT in statuses
+    assert position.shape == (4,)
+    assert watched.drive.failure() is not None
+    monkeypatch.setattr(watched.table, "read", lambda *_: int(Status.ENABLED))
+    watched.drive.read(0.0, position, rate)
+    assert watched.drive.read(0.0, position, rate) == Status.ENABLED
