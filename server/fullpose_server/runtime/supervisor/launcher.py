@@ -11,12 +11,13 @@ from pathlib import Path
 from fullpose_server.formats import durable
 from fullpose_server.runtime.contract import config as configs
 from fullpose_server.runtime.contract.config import RigConfig
+from fullpose_server.runtime.contract.hung import suspended
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.spare import Spare, spawned
 
 START_S = 180.0  # with no kernel in the cache, compiling takes most of it
-_ORDERS_S = 15.0  # for the one in reserve to take its orders: it may be still getting ready
+_ORDERS_S = 60.0  # for the one in reserve to take its orders: on a starved machine it is long in getting ready
 
 log = logging.getLogger(__name__)
 
@@ -92,7 +93,7 @@ class Launcher:
         """Whether it has begun to be the rig's: it takes the rig's lock."""
         deadline = time.monotonic() + _ORDERS_S
         while not self._paths.held():
-            if self.status(child) is not None or time.monotonic() > deadline:
+            if self.status(child) is not None or suspended(child) or time.monotonic() > deadline:
                 return False
             await asyncio.sleep(0.02)
         return True
