@@ -143,7 +143,7 @@ class Round:
     def _damage(self) -> None:
         lab = self._lab
         where = {
-            Fault.DATABASE_DAMAGED: "*.sqlite*",
+            Fault.DATABASE_DAMAGED: "fullpose.db*",
             Fault.PLAN_DAMAGED: "plans/*/*",
             Fault.RUN_DAMAGED: "runs/*.mcap",
             Fault.RIG_FILE_DAMAGED: f"rigs/{NAME}.toml",
@@ -151,7 +151,8 @@ class Round:
         lab.kill_server()
         files = sorted(path for path in lab.data.glob(where) if path.is_file())
         if not files:
-            return
+            assert self.fault in (Fault.PLAN_DAMAGED, Fault.RUN_DAMAGED), f"{where}: nothing to damage"
+            return  # none was made yet
         path = self._chance.choice(files)
         whole = path.read_bytes()
         damage(path, self._chance)
