@@ -154,6 +154,11 @@ async def _scene(connection: HTTPConnection, rig: str) -> None:
 
 
 async def _scene_problem(request: Request, error: Exception) -> Response:
-    status = 503 if isinstance(error, SceneSocketError) else 404
-    code, status = ("payload-mesh", 422) if isinstance(error, PayloadMeshError) else ("scene", status)
+    match error:
+        case PayloadMeshError():
+            code, status = "payload-mesh", 422
+        case SceneSocketError():
+            code, status = "scene", 503
+        case _:
+            code, status = "scene", 404
     return problem_response(ApiError(status, code, str(error)).problem, request)

@@ -47,9 +47,21 @@ class PrivateSocket:
 class Host(str):
     """The host that viser is told, and hands on as it is: it stands for a socket."""
 
-    __slots__ = ("listener", "taken")
-    listener: socket.socket
+    __slots__ = ("_listener", "taken")
+    _listener: socket.socket
     taken: bool
+
+    def __new__(cls, listener: socket.socket) -> "Host":
+        """It reads as loopback."""
+        host = super().__new__(cls, "127.0.0.1")
+        host._listener = listener
+        host.taken = False
+        return host
+
+    def take(self) -> socket.socket:
+        """The socket, for who listens on it."""
+        self.taken = True
+        return self._listener
 
 
 @contextmanager
@@ -59,8 +71,7 @@ def host_for(private: PrivateSocket) -> Iterator[Host]:
     It asks `websockets` to listen at a host: where that is one of these, `websockets` listens on the socket instead.
     Raises `SceneSocketError` at the end where viser asked in another way.
     """
-    host = Host("127.0.0.1")
-    host.listener, host.taken = private.listener, False
+    host = Host(private.listener)
     with _installing:
         serve = listening.serve
         listening.serve = _serving(serve)  # type: ignore[misc,assignment]
@@ -76,7 +87,6 @@ def _serving(serve: Callable[..., Any]) -> Callable[..., Any]:
     def on(handler: Any, host: Any = None, port: Any = None, **options: Any) -> Any:
         if not isinstance(host, Host):
             return serve(handler, host, port, **options)
-        host.taken = True
-        return serve(handler, unix=True, sock=host.listener, **options)
+        return serve(handler, unix=True, sock=host.take(), **options)
 
     return on

@@ -9,7 +9,7 @@ Node tree, each frame relative to the one around it:
 """
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -64,8 +64,12 @@ class RigScene:
         self._rig = rig
         self._machine = build(rig.geometry, size_m or (0.3, 0.2, 0.2), payload)
         self._socket = PrivateSocket()
-        with _quiet(), host_for(self._socket) as host:
-            self._server = _Viser(host=host, port=0, label=name, verbose=False)
+        with _quiet(), ExitStack() as undo:
+            undo.callback(self._socket.close)
+            with host_for(self._socket) as host:
+                self._server = _Viser(host=host, port=0, label=name, verbose=False)
+                undo.callback(self._server.stop)
+            undo.pop_all()
         self._shown: Pose | None = None
         self._previewed: tuple[Array, Array | None] | None = None
         with self._server.atomic():

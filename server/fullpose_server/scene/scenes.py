@@ -67,7 +67,7 @@ class SceneServer:
 
         `latest` answers with the newest telemetry sample or None, from this class's thread; without it, call `update`.
         `folder` is where the payload's mesh file is. A scene of that name that is running is replaced. Raises
-        `PayloadMeshError` where the mesh cannot be shown.
+        `PayloadMeshError` where the mesh cannot be shown, `SceneSocketError` where viser cannot be kept private.
         """
         from fullpose_server.scene.rig_scene import RigScene
 

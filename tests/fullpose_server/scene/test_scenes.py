@@ -3,10 +3,12 @@
 import stat
 import threading
 from pathlib import Path
+from typing import Any
 
 import httpx
 import numpy as np
 import pytest
+import viser
 import websockets.asyncio.server
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
@@ -19,6 +21,7 @@ from fullpose_server.scene.private_socket import PrivateSocket, host_for
 from fullpose_server.scene.scenes import SceneServer, pose_of
 from tests.fullpose_server.scene.browser_side import Viewer, sample, subprotocol
 from tests.support.sockets import connect
+from tests.support.waiting import until
 
 SERVE = websockets.asyncio.server.serve
 RIGS = builtin_rigs()
@@ -148,6 +151,20 @@ def test_a_viser_that_listens_in_another_way_is_not_used() -> None:
         assert websockets.asyncio.server.serve is SERVE
     finally:
         private.close()
+
+
+def test_one_that_did_is_stopped_and_its_port_closed(scenes: SceneServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    begin = viser.ViserServer.__init__
+
+    def plainly(server: viser.ViserServer, host: str, **options: Any) -> None:
+        begin(server, host=str(host), **options)
+
+    monkeypatch.setattr(viser.ViserServer, "__init__", plainly)
+    before = listening()
+    with pytest.raises(SceneSocketError):
+        scenes.start(RIGS["vertical-4"], Payload(), "vertical-4")
+    until(lambda: listening() == before)
+    assert scenes.names() == []
 
 
 def test_starting_again_replaces(scenes: SceneServer) -> None:
