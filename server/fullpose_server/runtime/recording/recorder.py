@@ -22,6 +22,7 @@ from fullpose_server.runtime.contract.hung import Hung
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.recording.mcap_writer import RunRecord
+from fullpose_server.runtime.recording.record_names import RECORD
 from fullpose_server.session.run_end import RunEnd
 
 CYCLE_S = 0.05
@@ -97,7 +98,7 @@ class Recorder:
             run = {key: event[key] for key in ("run_id", "rig", "who", "plan")}
             if event["kind"] == "incident":
                 run["incident"] = event["code"]
-            self._record = RunRecord(self._runs / f"{name}.mcap", run, event["wall_ns"], event["time_ns"])
+            self._record = RunRecord(self._runs / f"{name}{RECORD}", run, event["wall_ns"], event["time_ns"])
         except OSError as cause:
             self._complain(f"{name} is not recorded: {cause.strerror}")
             return

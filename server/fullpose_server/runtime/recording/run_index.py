@@ -3,11 +3,9 @@
 import contextlib
 import json
 import os
-import re
 import time
 from bisect import bisect_left
 from dataclasses import asdict, dataclass, replace
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +21,9 @@ from fullpose_server.runtime.recording.mcap_reader import (
     read_record,
     run_of,
 )
-from fullpose_server.runtime.recording.record_names import RecordNames
+from fullpose_server.runtime.recording.record_names import RECORD, RecordNames, began_at, is_run, rig_of
 from fullpose_server.session.states import State
 
-_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,199}")  # of a run: a file's name, and no path
 PIN = ".pin"  # of the mark beside a record that is to stay
 _WRITTEN_S = 5.0  # a record that has not grown for so long is no longer written: its recorder was cut off
 
@@ -81,9 +78,9 @@ class RunFiles:
         for run in reversed(ids[:end]):
             if limit is not None and len(found) >= limit:
                 break
-            if rig is not None and _rig_of(run) != rig:
+            if rig is not None and rig_of(run) != rig:
                 continue
-            path = self.folder / f"{run}.mcap"
+            path = self.folder / f"{run}{RECORD}"
             # One that is gone since we looked for it is no run any more.
             with contextlib.suppress(FileNotFoundError):
                 try:
@@ -98,12 +95,12 @@ class RunFiles:
         try:
             return self._summary(self.path(run))
         except RecordError as error:
-            raise FileError(f"{run}.mcap", f"a record ({error.why})") from None
+            raise FileError(f"{run}{RECORD}", f"a record ({error.why})") from None
 
     def path(self, run: str) -> Path:
         """The record's file. Raises `NotFoundError`."""
-        path = self.folder / f"{run}.mcap"
-        if not _ID.fullmatch(run) or not path.is_file():
+        path = self.folder / f"{run}{RECORD}"
+        if not is_run(run) or not path.is_file():
             raise NotFoundError("run", run)
         return path
 
@@ -136,9 +133,9 @@ class RunFiles:
         with os.scandir(self.folder) as entries:
             names = {entry.name: entry for entry in entries}
         for name, entry in names.items():
-            if name.endswith(".mcap"):
+            if name.endswith(RECORD):
                 with contextlib.suppress(FileNotFoundError):
-                    about, run = entry.stat(), name.removesuffix(".mcap")
+                    about, run = entry.stat(), name.removesuffix(RECORD)
                     found.append((run, about.st_size, about.st_mtime, f"{run}{PIN}" in names))
         return found
 
@@ -146,7 +143,7 @@ class RunFiles:
         """(id, why) of every file that is no record at all and that nobody writes."""
         found = []
         for run, _, written, _ in self.sizes():
-            path = self.folder / f"{run}.mcap"
+            path = self.folder / f"{run}{RECORD}"
             if abs(time.time() - written) < _WRITTEN_S:
                 continue
             try:
@@ -159,7 +156,7 @@ class RunFiles:
 
     def files(self, run: str) -> list[Path]:
         """The record and what is kept beside it."""
-        path = self.folder / f"{run}.mcap"
+        path = self.folder / f"{run}{RECORD}"
         return [path, path.with_suffix(".json"), path.with_suffix(PIN)]
 
     def _summary(self, path: Path) -> RunSummary:
@@ -190,15 +187,11 @@ def _keep(summary: RunSummary, kept: Path) -> None:
         write_text(kept, json.dumps(asdict(summary)))
 
 
-def _rig_of(run: str) -> str:
-    return run.split("-", 1)[-1].rsplit("-", 1)[0].removesuffix("-incident")
-
-
 def _named(path: Path) -> RunSummary:
     """What the file's name says."""
     return RunSummary(
         id=path.stem,
-        rig=_rig_of(path.stem),
+        rig=rig_of(path.stem),
         end=None,
         end_code=None,
         incident=None,
@@ -206,7 +199,7 @@ def _named(path: Path) -> RunSummary:
         plan_id=None,
         plan_hash=None,
         who="",
-        started=_stamp(path.stem),
+        started=began_at(path.stem),
         ended=None,
         samples=None,
         lost_samples=None,
@@ -275,14 +268,6 @@ def _lost(rows: Samples, events: list[dict[str, Any]]) -> int:
     if "run_end" in heads:
         last.append(heads["run_end"])
     return max(last) - min(first) + 1 - rows.size if first and last else 0
-
-
-def _stamp(run: str) -> float | None:
-    """When a run began by its name, to the second [s since 1970]."""
-    try:
-        return datetime.strptime(run.split("-", 1)[0], "%Y%m%dT%H%M%S").replace(tzinfo=UTC).timestamp()
-    except ValueError:
-        return None
 
 
 def _largest(values: np.ndarray[Any, Any]) -> float | None:

@@ -14,7 +14,8 @@ from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.hung import suspended
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.supervisor.errors import HostError
-from fullpose_server.runtime.supervisor.spare import Spare, spawned
+from fullpose_server.runtime.supervisor.spare import Spare
+from fullpose_server.runtime.supervisor.spawn import spawned
 
 START_S = 180.0  # with no kernel in the cache, compiling takes most of it
 _ORDERS_S = 60.0  # for the one in reserve to take its orders: on a starved machine it is long in getting ready
