@@ -31,6 +31,9 @@ class DriveCall(IntEnum):
         return self.name.lower()
 
 
+PATIENT = frozenset({DriveCall.CONNECT, DriveCall.CLOSE})  # they may wait for a table
+
+
 class Pending(NamedTuple):
     """A call that has not returned."""
 

@@ -10,11 +10,10 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from fullpose_server.runtime.contract.drive_call import DriveCall, pending
+from fullpose_server.runtime.contract.drive_call import PATIENT, pending
 from fullpose_server.session.states import IN_MOTION
 
 SILENT_NS = 150_000_000  # a sign of life older than this: the loop does not respond
-_PATIENT = frozenset({DriveCall.CONNECT, DriveCall.CLOSE})  # they may wait for a table
 _CODES = frozenset(state.code for state in IN_MOTION)
 
 
@@ -50,4 +49,4 @@ class Hung:
             self._count = 0
             return False
         self._count += 1
-        return self._count >= (self._patient if call is None or call.call in _PATIENT else self._looks)
+        return self._count >= (self._patient if call is None or call.call in PATIENT else self._looks)

@@ -35,9 +35,8 @@ class Caretaker:
     def hangs(self, call: Pending, brake: str) -> None:
         """Name it, brake, publish; the sample of this tick, which the loop owes, goes into the record."""
         now_ns = self._parts.clock.monotonic_ns()
-        message = drive_call.hanging(self._parts.drive.name, call, now_ns, self._parts.clock.wall_ns())
         took_ms = (now_ns - call.since_ns) / 1e6
-        found = Finding(drive_call.HANGS, True, f"{message}; {brake}", None, took_ms, math.nan, "ms")
+        found = Finding(drive_call.HANGS, True, f"{self._said(call)}; {brake}", None, took_ms, math.nan, "ms")
         self._executor.apply([Violation(found, Event.FAULT, drive_brakes=self._parts.machine.linked)])
         self._publisher.record(now_ns, now_ns - call.since_ns, 1)
         self.tend()
@@ -55,8 +54,9 @@ class Caretaker:
     def last(self, call: Pending) -> None:
         """The record's last words. The state stays as it was published: faulted."""
         self._executor.end_run()
-        text = drive_call.hanging(
-            self._parts.drive.name, call, self._parts.clock.monotonic_ns(), self._parts.clock.wall_ns()
-        )
-        self._parts.log.add("exit", why=f"{text}: the process is to be replaced")
+        self._parts.log.add("exit", why=f"{self._said(call)}: the process is to be replaced")
         self._publisher.refresh(seconds(self._parts.clock))
+
+    def _said(self, call: Pending) -> str:
+        clock = self._parts.clock
+        return drive_call.hanging(self._parts.drive.name, call, clock.monotonic_ns(), clock.wall_ns())

@@ -17,7 +17,7 @@ from fullpose_server.runtime.loop.clock import Clock
 from fullpose_server.runtime.loop.watched_drive import WatchedDrive
 
 LOOK_S = 0.01
-_PATIENCE = {DriveCall.CONNECT: 1500, DriveCall.CLOSE: 100}  # [looks] they may wait for a table
+_PATIENCE = {DriveCall.CONNECT: 1500, DriveCall.CLOSE: 100}  # [looks] of the calls that are `drive_call.PATIENT`
 _ELSE = 8
 _GIVES_UP = 100  # looks after it was named
 _BRAKE_S = 0.05
