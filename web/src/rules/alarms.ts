@@ -1,6 +1,6 @@
 /** Alarms in words, and in the order they are read in. */
 import type { Alarm, AlarmQuery, Severity } from "../contract/types";
-import { clockTime, fixed } from "./format";
+import { clockTime, fixed, inWords } from "./format";
 
 /** When it occurred last [s since 1970]. */
 export function newest(alarm: Alarm): number {
@@ -13,7 +13,7 @@ export function newestFirst(a: Alarm, b: Alarm): number {
 
 /** What it is of: code, frame, value and the limit it is past, and how often it came. */
 export function causeOf({ first, code, frame, value, limit, unit, count, time_s }: Alarm): string {
-  const what = `${first ? "first cause, " : ""}${code.replaceAll("_", " ")}${frame ? `, ${frame}` : ""}`;
+  const what = `${first ? "first cause, " : ""}${inWords(code)}${frame ? `, ${frame}` : ""}`;
   const past = typeof limit === "number" ? ` past ${fixed(limit, 3)}` : "";
   const much = typeof value === "number" ? `: ${fixed(value, 3)}${past} ${unit ?? ""}`.trimEnd() : "";
   return `${what}${much}${count > 1 ? ` (${count} times since ${clockTime(time_s)})` : ""}`;

@@ -3,6 +3,9 @@
 export const MISSING = "–";
 const MINUS = "−";
 
+/** A code or a name of the contract as people read it, "following error". */
+export const inWords = (code: string): string => code.replaceAll("_", " ");
+
 /** Fixed decimals with a real minus sign; widths stay equal under tabular numerals. */
 export function fixed(value: number | null | undefined, digits: number): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return MISSING;

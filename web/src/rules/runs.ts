@@ -1,6 +1,7 @@
 // How a run ended, in words.
 
 import type { components } from "../contract/schema";
+import { inWords } from "./format";
 
 export type RunEnd = NonNullable<components["schemas"]["RunOut"]["end"]>;
 
@@ -26,5 +27,5 @@ export interface Ending {
 /** What the list of runs says of an end; of a fault, which. */
 export function ending(end: RunEnd, code: string | null): Ending {
   const words = end === "fault" && code !== null ? `fault: ${code}` : end === "estop" ? "E-stop" : end;
-  return { text: words.replaceAll("_", " "), title: TITLES[end], orderly: ORDERLY.has(end) };
+  return { text: inWords(words), title: TITLES[end], orderly: ORDERLY.has(end) };
 }
