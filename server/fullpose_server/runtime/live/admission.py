@@ -11,8 +11,8 @@ _SOURCE_SILENT_S = 0.5  # then another may be followed in its place
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """`unused`: why a sample is not used, `USED` where it is; `rate`: for which it is refused [rad/s], else nan."""
+class Outcome:
+    """What becomes of a sample: `unused`, why it is not, else `USED`; `rate`, why it is implausible [rad/s], or nan."""
 
     unused: LiveStatus = USED
     rate: float = math.nan
@@ -35,20 +35,20 @@ class Admission:
         self._source: tuple[int, Any] | None = None  # socket and sender that is followed
         self._source_at = 0.0  # [s] when it was heard
 
-    def unproved(self) -> Verdict:
+    def unproved(self) -> Outcome:
         """Of a sample that does not prove to be of the loaded source."""
         self.unproven += 1
-        return Verdict(LiveStatus.UNPROVEN)
+        return Outcome(LiveStatus.UNPROVEN)
 
-    def verdict(self, source: tuple[int, Any], rate: float, now: float) -> Verdict:
+    def weigh(self, source: tuple[int, Any], rate: float, now: float) -> Outcome:
         """Of a sample of `source`, which is a socket and a sender, that turns the body at `rate` [rad/s]."""
         if not self._is_followed(source, now):
-            return Verdict(LiveStatus.DROPPED)
+            return Outcome(LiveStatus.DROPPED)
         if not rate <= self.plausible:
             self.implausible += 1
             self.implausible_rate = rate
-            return Verdict(LiveStatus.IMPLAUSIBLE, rate)
-        return Verdict()
+            return Outcome(LiveStatus.IMPLAUSIBLE, rate)
+        return Outcome()
 
     def _is_followed(self, source: tuple[int, Any], now: float) -> bool:
         """One source a rig: the first to be heard, until it has been silent for a while."""
@@ -66,7 +66,7 @@ class Taken:
     """A sample that came at `arrived` [s] by `via` from `sender`, and what became of it."""
 
     sample: LiveSample
-    verdict: Verdict
+    outcome: Outcome
     arrived: float
     via: Any
     sender: Any

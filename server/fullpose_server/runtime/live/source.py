@@ -16,7 +16,7 @@ from fullpose._typing import Array
 from fullpose.rig import Rig
 from fullpose_server.runtime.contract.config import LiveConfig
 from fullpose_server.runtime.contract.messages import LiveHealth
-from fullpose_server.runtime.live.admission import Admission, Taken, Verdict
+from fullpose_server.runtime.live.admission import Admission, Outcome, Taken
 from fullpose_server.runtime.live.buffer import LiveBuffer
 from fullpose_server.runtime.live.factory import live_step
 from fullpose_server.runtime.live.packets import (
@@ -181,19 +181,19 @@ class LiveSource:
                     self.bad += 1
                     continue
                 if self._provenance.proves(data, sender):
-                    verdict = self._verdict(sample, (each.fileno(), sender), now)
+                    outcome = self._weighed(sample, (each.fileno(), sender), now)
                 else:
-                    verdict = self._admission.unproved()
-                self._waiting.append(Taken(sample, verdict, self._monotonic(), each, sender))
+                    outcome = self._admission.unproved()
+                self._waiting.append(Taken(sample, outcome, self._monotonic(), each, sender))
 
-    def _verdict(self, sample: LiveSample, source: tuple[int, Any], now: float) -> Verdict:
+    def _weighed(self, sample: LiveSample, source: tuple[int, Any], now: float) -> Outcome:
         """Use a sample, or say why not."""
         if not self._following:
-            return Verdict(LiveStatus.IDLE)
-        verdict = self._admission.verdict(source, self._buffer.rate_of(sample), now)
-        if verdict.unused or self._take(sample, now):
-            return verdict
-        return Verdict(LiveStatus.DROPPED)
+            return Outcome(LiveStatus.IDLE)
+        outcome = self._admission.weigh(source, self._buffer.rate_of(sample), now)
+        if outcome.unused or self._take(sample, now):
+            return outcome
+        return Outcome(LiveStatus.DROPPED)
 
     def _take(self, sample: LiveSample, now: float) -> bool:
         step, clock_steps = self._loaded(), self._buffer.steps
@@ -231,10 +231,10 @@ class LiveSource:
         """Answer the samples taken in this tick: x (4,) [rad] was commanded."""
         for taken in self._waiting:
             sample, via, sender = taken.sample, taken.via, taken.sender
-            status = taken.verdict.unused or (LiveStatus.FOLLOWED if self._following else LiveStatus.IDLE)
+            status = taken.outcome.unused or (LiveStatus.FOLLOWED if self._following else LiveStatus.IDLE)
             if status is LiveStatus.FOLLOWED and self.limited:
                 status |= LiveStatus.LIMITED
-            value = taken.verdict.rate * _DEG
+            value = taken.outcome.rate * _DEG
             limit = math.nan if math.isnan(value) else self._admission.plausible * _DEG
             lag = attitude_error(self._rig.axes, x, np.array(sample.quaternion)) * _DEG
             angles = tuple((x * _DEG).tolist())
