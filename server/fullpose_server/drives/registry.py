@@ -7,6 +7,7 @@ from fullpose.rig import Rig
 from fullpose_server.drives.base import Drive, DriveError, DriveFactory
 
 GROUP = "fullpose.drives"
+_PARTS = ("name", *(part for part in vars(Drive) if not part.startswith("_")))
 BUILTIN = {"simulated": "fullpose_server.drives.simulated:make", "udp": "fullpose_server.drives.udp:make"}
 
 
@@ -16,8 +17,18 @@ def names() -> list[str]:
 
 
 def make(name: str, rig: Rig, rate_hz: float, options: dict[str, Any]) -> Drive:
-    """The drive `name`, unconnected. Raises `DriveError` where there is none, or it cannot be loaded."""
-    return _factory(name)(rig, rate_hz, options)
+    """The drive `name`, unconnected. Raises `DriveError` where there is none, or it cannot be loaded or made."""
+    factory = _factory(name)
+    try:
+        made = factory(rig, rate_hz, options)
+    except DriveError:
+        raise
+    except (Exception, SystemExit) as cause:
+        raise DriveError(f"drive {name!r} cannot be made: {type(cause).__name__}: {cause}") from cause
+    missing = [part for part in _PARTS if not hasattr(made, part)]
+    if missing:
+        raise DriveError(f"drive {name!r} made {type(made).__name__}, which has no {', '.join(missing)}")
+    return made
 
 
 def _factory(name: str) -> DriveFactory:

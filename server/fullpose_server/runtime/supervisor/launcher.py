@@ -36,20 +36,27 @@ class Launcher:
         """Start a process with `config`; returns its pid when it is ready. Raises `HostError`."""
         self._paths.notes.unlink(missing_ok=True)
         await asyncio.to_thread(durable.write, self._paths.config, configs.encode(config))
-        await self._begun()
+        try:
+            await self._begun()
+            await self._ready(config.name)
+        finally:
+            if self._spare is not None:
+                self._spare.make_soon()
+        return self._child
+
+    async def _ready(self, rig: str) -> None:
+        """Wait until the child is. Raises `HostError`, and it is no more."""
         child = self._child
         deadline = time.monotonic() + START_S
         while time.monotonic() < deadline:
             if self.status(child) is not None:
-                raise HostError(f"the rig process of {config.name} ended at once:\n{self._log_end()}")
+                raise HostError(f"the rig process of {rig} ended at once:\n{self._log_end()}")
             if self._paths.running() == child:
-                if self._spare is not None:
-                    self._spare.make_soon()
-                return child
+                return
             await asyncio.sleep(0.02)
         os.kill(child, signal.SIGKILL)
         await self.reaped(child)
-        raise HostError(f"the rig process of {config.name} was not ready within {START_S:g} s:\n{self._log_end()}")
+        raise HostError(f"the rig process of {rig} was not ready within {START_S:g} s:\n{self._log_end()}")
 
     def differences(self, config: RigConfig) -> list[str]:
         """The settings in which the process that was started here last is not as `config` has it."""

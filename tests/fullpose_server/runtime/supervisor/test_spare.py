@@ -15,6 +15,7 @@ from fullpose_server.runtime.contract.hung import suspended as is_suspended
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.supervisor import launcher
 from fullpose_server.runtime.supervisor import spare as module
+from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 from fullpose_server.runtime.supervisor.spare import Spare
 from tests.fullpose_server.runtime.rigs import Operator, config_of, plan_of, written
@@ -108,6 +109,18 @@ def test_a_spare_that_has_died_is_made_anew(tmp_path: Path) -> None:
             os.kill(dead, signal.SIGKILL)
             await soon(lambda: spare.pid not in (0, dead))
             assert not exists(dead)
+
+    asyncio.run(fly())
+
+
+def test_a_rig_that_cannot_be_started_does_not_use_the_reserve_up(tmp_path: Path) -> None:
+    async def fly() -> None:
+        async with rig_with_spare(tmp_path) as (_, spare):
+            taken = spare.pid
+            broken = RigHost(config_of(tmp_path / "broken", drive="nosuch"), None, spare)
+            with pytest.raises(HostError, match="no drive 'nosuch'"):
+                await broken.start()
+            await soon(lambda: spare.pid not in (0, taken))
 
     asyncio.run(fly())
 
