@@ -90,7 +90,7 @@ class Round:
         taken = int(shared.header["recorder_seq"][0]) if shared is not None else 0
         self._inject()
         lab.serve()
-        lab.operator.to_idle()
+        lab.to_idle()
         newest = lab.judge(before, self._spoiled)
         if recording and self.fault is not Fault.DISK_FULL:
             held = CHUNK_S * RATE_HZ

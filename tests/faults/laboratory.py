@@ -86,12 +86,14 @@ class Laboratory:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with contextlib.suppress(AssertionError, httpx.HTTPError):
-            self.operator.to_idle()
-        if self.process is not None:
-            self.process.send_signal(signal.SIGINT)
-            self.process.communicate(timeout=60)
-        self.server.http.close()
+        try:
+            with contextlib.suppress(AssertionError, httpx.HTTPError):
+                self.to_idle()
+        finally:
+            if self.process is not None:
+                self.process.send_signal(signal.SIGINT)
+                self.process.communicate(timeout=60)
+            self.server.http.close()
 
     def serve(self) -> None:
         """Start the server where none runs, and wait until it answers."""
@@ -141,10 +143,24 @@ class Laboratory:
         self.plan = str(made["id"])
         return self.plan
 
+    def to_idle(self) -> None:
+        """The session at rest and reset, whatever was done to it: once its process, if that was killed, is back."""
+        until(self._taken, every_s=0.1)
+        self.operator.to_idle()
+
+    def _taken(self) -> bool:
+        try:
+            self.operator.take()
+        except httpx.HTTPStatusError as refused:
+            if refused.response.status_code != 503:
+                raise
+            return False
+        return True
+
     def bring(self, state: str) -> None:
         """From wherever the session is to `state`; one that passes by itself may have passed."""
         operator = self.operator
-        operator.to_idle()
+        self.to_idle()
         if state == "idle":
             return
         if state == "estopped":
@@ -157,7 +173,7 @@ class Laboratory:
         assert loaded.status_code == 200, loaded.text
         if state == "ready":
             return
-        until(lambda: operator.command("arm").status_code == 200, every_s=0.1)  # once the disk and recorder are well
+        self._arm()
         if state == "armed":
             return
         operator.command("start")
@@ -169,6 +185,21 @@ class Laboratory:
             operator.wait("held")
         elif state == "stopping":
             self.server.http.post(f"/rigs/{NAME}/stop")
+
+    def _arm(self) -> None:
+        """Once the disk and the recorder are well."""
+        refused = ""
+
+        def armed() -> bool:
+            nonlocal refused
+            answer = self.operator.command("arm")
+            refused = answer.text
+            return answer.status_code == 200
+
+        try:
+            until(armed, every_s=0.1)
+        except AssertionError:
+            raise AssertionError(f"never armed: {refused}") from None
 
     def records(self) -> dict[Path, int]:
         """The runs' files and their sizes."""

@@ -61,7 +61,8 @@ class Operator:
         self.secret = ""
 
     def take(self, action: str = "takeover") -> None:
-        held = self.server.http.post(f"/rigs/{self.rig}/lease", json={"action": action}).json()
+        answer = self.server.http.post(f"/rigs/{self.rig}/lease", json={"action": action})
+        held = answer.raise_for_status().json()
         self.epoch, self.sequence, self.secret = held["epoch"], held["sequence"], held["secret"]
 
     def lease(self, action: str = "renew", **more: Any) -> httpx.Response:
@@ -112,6 +113,7 @@ class Operator:
             case "idle":
                 return True
             case "disconnected":
+                self.command("acknowledge")  # of a process that was lost: what stands bars arming
                 self.command("connect")
             case "ready":
                 self.command("unload")
