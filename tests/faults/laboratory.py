@@ -92,20 +92,27 @@ class Laboratory:
         finally:
             if self.process is not None:
                 self.process.send_signal(signal.SIGINT)
-                self.process.communicate(timeout=60)
+                self._reaped()
             self.server.http.close()
 
     def serve(self) -> None:
         """Start the server where none runs, and wait until it answers."""
         if self.process is None or self.process.poll() is not None:
-            if self.process is not None:
-                self.process.communicate(timeout=60)
+            self._reaped()
             self.process = start(
                 "serve", "--port", self.port, "--data-dir", self.data, FULLPOSE_RIG_RATE_HZ=str(RATE_HZ)
             )
             assert self.process.stdout is not None
             self.process.stdout.readline()
         until(self.healthy, every_s=0.1)
+
+    def _reaped(self) -> None:
+        """Wait for the server's end; what it had started may hold the other ends of its pipes for a while longer."""
+        if self.process is not None:
+            self.process.wait(timeout=120)
+            for pipe in (self.process.stdout, self.process.stderr):
+                if pipe is not None:
+                    pipe.close()
 
     def healthy(self) -> dict[str, Any] | None:
         """What health says; None where the server does not answer."""
