@@ -19,6 +19,7 @@ from tests.support.repository import ROOT
 
 FLIGHTS = ROOT / "examples" / "flights"
 FLIGHT = FLIGHTS / "loop.csv"
+PATIENT_MS = 120_000  # a page, a click or a picture on a machine that does much else
 DESK: ViewportSize = {"width": 1440, "height": 900}
 TABLET: ViewportSize = {"width": 1024, "height": 768}
 # Software rendering for WebGL; 2D canvases without it, where it is many times slower than the processor itself.
@@ -63,6 +64,7 @@ class Pages:
             base_url=self._server.url, viewport=viewport, has_touch=touch, color_scheme="dark"
         )
         self._contexts.append(context)
+        context.set_default_timeout(PATIENT_MS)
         page = context.new_page()
         if not scene:
             page.route("**/scene/*/", lambda route: route.fulfill(body="<!doctype html>", content_type="text/html"))

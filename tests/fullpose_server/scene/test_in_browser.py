@@ -23,6 +23,8 @@ ARGUMENTS = [
 ]
 PATIENCE_S = 60.0
 
+PATIENT_MS = 120_000  # software rendering on a machine that does much else
+
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
@@ -34,7 +36,7 @@ def browser() -> Iterator[Browser]:
 
 def picture(page: Page) -> np.ndarray:
     """The page as it looks. (height, width, 3)"""
-    return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), dtype=np.int16)
+    return np.asarray(Image.open(io.BytesIO(page.screenshot(timeout=PATIENT_MS))).convert("RGB"), dtype=np.int16)
 
 
 def share_of(image: np.ndarray, colour: str) -> float:
