@@ -44,6 +44,11 @@ async def begun(queue: PlanQueue, plan: str) -> None:
     await asyncio.to_thread(until, lambda: queue.progress(plan), every_s=0.001)
 
 
+def _phase(queue: PlanQueue, plan: str) -> str | None:
+    progress = queue.progress(plan)
+    return None if progress is None else progress.phase
+
+
 def test_a_plan_is_made_with_leads_and_report(stores: Stores) -> None:
     plan = stores.add_plan(stores.add_flight(SLOW))
 
@@ -130,7 +135,8 @@ def test_a_planning_process_that_dies_fails_its_plan_and_is_replaced(stores: Sto
     async def work(queue: PlanQueue) -> None:
         queue.submit(victim)
         queue.submit(after)
-        await begun(queue, victim)
+        # Its process works at it: one that died before it was asked is replaced, and the plan made.
+        await asyncio.to_thread(until, lambda: _phase(queue, victim) not in (None, "starting"), every_s=0.001)
         assert queue.worker_pid is not None
         os.kill(queue.worker_pid, signal.SIGKILL)
         assert await ended(stores, victim) == "failed"
