@@ -20,6 +20,7 @@ from tests.support.repository import ROOT
 FLIGHTS = ROOT / "examples" / "flights"
 FLIGHT = FLIGHTS / "loop.csv"
 PATIENT_MS = 120_000  # a page, a click or a picture on a machine that does much else
+TROUBLED = "troubled"  # a rig that is left E-stopped: no other test's
 DESK: ViewportSize = {"width": 1440, "height": 900}
 TABLET: ViewportSize = {"width": 1024, "height": 768}
 # Software rendering for WebGL; 2D canvases without it, where it is many times slower than the processor itself.
@@ -94,6 +95,8 @@ class Stock:
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """`fullpose serve` on a free port with an empty data folder, and its rigs stopped at the end."""
     data = tmp_path_factory.mktemp("data")
+    (data / "rigs").mkdir()
+    (data / "rigs" / f"{TROUBLED}.toml").write_text(f'name = "{TROUBLED}"\ngeometry = "vertical-4"\n', encoding="utf-8")
     log = (data / "server.log").open("w")
     command = [
         sys.executable,
