@@ -97,7 +97,7 @@ class Console:
         """Wait until no frame turns."""
         self.until(lambda: max(map(abs, self.rates())) < 0.05, 20.0)
 
-    def until(self, condition: Callable[[], bool], within_s: float) -> None:
+    def until(self, condition: Callable[[], bool], within_s: float = SLOW_MS / 1000.0) -> None:
         """Wait for something the page shows."""
         end = time.monotonic() + within_s
         while not condition():

@@ -34,12 +34,12 @@ def test_a_plan_is_scrubbed_and_says_what_closes_its_way(pages: Pages, stocked: 
     expect(shown).to_contain_text(re.compile(r"\d"), timeout=SOON_MS)
 
     # Through time by key and by slider: the scene's ghost and the figures follow the plan.
-    console.until(lambda: colours(scene.screenshot()) > 100, 60.0)
+    console.until(lambda: colours(scene.screenshot()) > 100)
     before, blocked = scene.screenshot(), shown.inner_text()
     page.keyboard.press("End")
     assert now() > block["time_s"]
     expect(shown).not_to_have_text(blocked)
-    console.until(lambda: changed(before, scene.screenshot()) > 0.002, 20.0)
+    console.until(lambda: changed(before, scene.screenshot()) > 0.002)
     page.screenshot(path=shots / "plan-end.png")
     console.put_scene_away()
     page.get_by_label("Time", exact=True).fill("2")
@@ -47,7 +47,7 @@ def test_a_plan_is_scrubbed_and_says_what_closes_its_way(pages: Pages, stocked: 
     page.keyboard.press("Shift+ArrowRight")
     assert now() == 3.0
     page.get_by_role("button", name="Play").click()
-    console.until(lambda: now() > 3.3, 10.0)
+    console.until(lambda: now() > 3.3)
     page.get_by_role("button", name="Pause").click()
 
     # A margin leads to its moment, and to the plots of its quantity.

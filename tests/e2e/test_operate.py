@@ -34,7 +34,7 @@ def test_flight_from_upload_to_replay(pages: Pages, shots: Path) -> None:
     console.expect_state("disconnected")
     scene = page.locator("iframe")
     # The machine is there before it flies: many colours, none over nearly all of the picture.
-    console.until(lambda: colours(scene.screenshot()) > 100, 60.0)
+    console.until(lambda: colours(scene.screenshot()) > 100)
     page.screenshot(path=shots / "operate-first.png")
     console.fly(FLIGHT)
 
@@ -48,7 +48,7 @@ def test_flight_from_upload_to_replay(pages: Pages, shots: Path) -> None:
         tracking.append(console.error("tracking"))
         return len(solve) >= 20 and apart(before, console.angles()) > 1.0
 
-    console.until(turned, 30.0)
+    console.until(turned)
     assert max(solve) < 1e-9
     assert 0.0 < max(tracking) < 5.0
     page.screenshot(path=shots / "operate-running-dark.png")
@@ -58,7 +58,7 @@ def test_flight_from_upload_to_replay(pages: Pages, shots: Path) -> None:
     console.expect_state("held")
     console.at_rest()
     # Looked at while it waits: a slow scene must not take the time of the flight.
-    console.until(lambda: changed(first, scene.screenshot()) > 0.002, 20.0)
+    console.until(lambda: changed(first, scene.screenshot()) > 0.002)
     console.put_scene_away()
     held_at, angles = console.path_time(), console.angles()
     page.wait_for_timeout(700)  # what must not happen is watched for a while
@@ -70,7 +70,7 @@ def test_flight_from_upload_to_replay(pages: Pages, shots: Path) -> None:
     console.expect_state("held")
     assert console.path_time() == held_at
     console.give("resume", "running")
-    console.until(lambda: console.path_time() > held_at + 0.5, 10.0)
+    console.until(lambda: console.path_time() > held_at + 0.5)
     assert console.error("solve") < 1e-9
 
     # E-stop latches; the way out is to acknowledge, then to reset.
@@ -111,20 +111,20 @@ def replayed(console: Console, shots: Path) -> None:
 
     expect(console.state).to_have_attribute("data-state", re.compile(r"\w+"), timeout=SLOW_MS)
     expect(page.get_by_test_id("replay-badge")).to_be_visible()
-    console.until(lambda: now() > 0.5, 30.0)
+    console.until(lambda: now() > 0.5)
     # Where nothing runs, Space is the playback's.
     page.keyboard.press("Space")
     expect(replay).to_have_attribute("data-playing", "false")
     page.keyboard.press("Home")
     # The playhead goes ahead of what the server sends: the run begins where the rig stood at first, at zero.
-    console.until(lambda: now() == 0.0 and max(map(abs, console.angles())) < 0.01, 20.0)
+    console.until(lambda: now() == 0.0 and max(map(abs, console.angles())) < 0.01)
     start = console.angles()
     page.get_by_label("Time", exact=True).fill("3")
-    console.until(lambda: abs(now() - 3.0) < 0.05 and apart(start, console.angles()) > 1.0, 10.0)
+    console.until(lambda: abs(now() - 3.0) < 0.05 and apart(start, console.angles()) > 1.0)
     assert console.error("solve") < 1e-9
     page.get_by_label("Speed").select_option("4")
     page.get_by_role("button", name="Play").click()
-    console.until(lambda: now() > 3.5, 10.0)
+    console.until(lambda: now() > 3.5)
     page.screenshot(path=shots / "run-replay.png")
 
 
@@ -173,14 +173,14 @@ def test_two_consoles_at_one_rig(page: Page, pages: Pages, shots: Path) -> None:
     for name, target in zip(FRAMES, pose, strict=True):
         dialog.get_by_label(name, exact=True).fill(str(target))
     dialog.get_by_role("button", name="Move", exact=True).click()
-    flown.until(lambda: apart(flown.angles(), pose) < 0.05, 30.0)
+    flown.until(lambda: apart(flown.angles(), pose) < 0.05)
     flown.expect_state("armed")
     flown.button("move").click()
     dialog.get_by_label("Jog by").select_option("5")
     page.screenshot(path=shots / "operate-jog.png")
     dialog.get_by_role("button", name="Jog outer up").click()
     pose[1] += 5.0
-    flown.until(lambda: apart(flown.angles(), pose) < 0.05, 30.0)
+    flown.until(lambda: apart(flown.angles(), pose) < 0.05)
     flown.expect_state("armed")
     dialog.get_by_role("button", name="Close").click()
     expect(dialog).to_be_hidden()
@@ -245,8 +245,8 @@ def test_a_live_source_is_followed_until_it_is_gone(page: Page, server: Server, 
         console.give("go_live", "live")
         expect(live).to_have_text("followed", timeout=SOON_MS)
         before = console.angles()
-        console.until(lambda: apart(before, console.angles()) > 1.0, 20.0)
-        console.until(lambda: console.error("solve") < 1e-9, 20.0)  # but while it is late
+        console.until(lambda: apart(before, console.angles()) > 1.0)
+        console.until(lambda: console.error("solve") < 1e-9)  # but while it is late
         expect(page.get_by_test_id("live-figures")).to_have_text(re.compile(r"\d+ Hz · \d+ ms (ahead|late)"))
         page.screenshot(path=shots / "operate-live.png")
     finally:
