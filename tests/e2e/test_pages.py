@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 import pytest
-from playwright.sync_api import Page, ViewportSize, expect
+from playwright.sync_api import Page, Route, ViewportSize, expect
 
 from tests.e2e.conftest import TABLET, Pages, Stock
 from tests.e2e.console import SLOW_MS, SOON_MS
@@ -81,9 +81,22 @@ def visit(page: Page, name: str) -> None:
         expect(page.get_by_text("Reading the records")).to_be_hidden(timeout=SOON_MS)
 
 
+def with_the_longest_run(route: Route) -> None:
+    """The server's list of runs, and in front of it the one whose row is the longest."""
+    answer = route.fetch()
+    listed = answer.json()
+    longest = {"rig": "horizontal-4-in-the-hall", "who": "the operator of the early shift", "bytes": 123_456_789}
+    ended = {"end": "fault", "end_code": "tracking_error_beyond_limit", "incident": "live_source_lost"}
+    figures = {"samples": 3_600_000, "lost_samples": 12_345, "duration_s": 3600.0, "max_tracking_error_deg": 359.1234}
+    kept = {"started_at": "2026-11-29T23:59:59.999Z", "complete": False, "error": None, "max_solve_error_deg": 1.8e-14}
+    first = {"id": "the-longest", "pinned": True, **longest, **ended, **figures, **kept}
+    route.fulfill(response=answer, json=[first, *listed])
+
+
 def opened(pages: Pages, viewport: ViewportSize | None = None) -> Page:
     """The console, with a stocked server behind it."""
     page = pages.open(viewport=viewport, touch=True) if viewport else pages.open()
+    page.route(re.compile(r"/api/v1/runs(\?.*)?$"), with_the_longest_run)
     page.goto("/operate/horizontal-4")
     expect(page.get_by_test_id("state")).to_have_attribute("data-state", re.compile(r"\w+"), timeout=SOON_MS)
     return page
