@@ -1,7 +1,10 @@
 """Onto the disk for good: what a crash or a power cut must not take back, in the order in which it was written."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from uuid import uuid4
 
 
 def sync(path: Path) -> None:
@@ -13,13 +16,18 @@ def sync(path: Path) -> None:
         os.close(descriptor)
 
 
-def write(path: Path, data: bytes) -> None:
-    """A file of these bytes, whole under its name or not at all. Raises OSError; then what was there before stays."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
+@contextmanager
+def replacing(target: Path) -> Iterator[Path]:
+    """A path beside `target` to write to: it takes the place of `target` at the end, whole, as a file like any other.
+
+    By an exception it is removed, and what was there before stays. Raises OSError.
+    """
+    draft = target.with_name(f".{target.name}.{uuid4().hex}")
+    draft.touch(exist_ok=False)
     try:
-        draft.write_bytes(data)
-        rename(draft, path)
-    except OSError:
+        yield draft
+        rename(draft, target)
+    except BaseException:
         draft.unlink(missing_ok=True)
         raise
 

@@ -2,7 +2,6 @@
 
 import os
 import stat
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,19 +23,8 @@ def replacing(path: Path) -> Iterator[Path]:
 
     Links are followed: what they lead to is replaced. Raises `FileError` as `check_writable`.
     """
-    target = _target(path)
-    descriptor, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-    os.close(descriptor)
-    draft = Path(name)
-    try:
+    with durable.replacing(_target(path)) as draft:
         yield draft
-        mask = os.umask(0)
-        os.umask(mask)
-        draft.chmod(0o666 & ~mask)  # mkstemp's files are private; this one is like any other
-        durable.rename(draft, target)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
 
 
 def check_writable(path: Path) -> None:

@@ -7,6 +7,7 @@ it is in a call of the drive: there the watch may take it, and the loop waits wi
 import logging
 import math
 import threading
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -62,29 +63,13 @@ class WatchedDrive:
         """See `Drive`. Raises `DriveError`, with the time it took."""
         self._failing.clear()
         self._failure = None
-        begun = self._begin(DriveCall.CONNECT)
-        try:
-            self._drive.connect(now)
-        except DriveError as cause:
-            raise DriveError(f"{cause} (connect took {self._took(begun):.3g} ms)") from cause
-        except _ERRORS as cause:
-            raise DriveError(self._told(DriveCall.CONNECT, begun, cause)) from cause
-        finally:
-            self._end(begun)
+        self._may_refuse(DriveCall.CONNECT, lambda: self._drive.connect(now))
 
     def enable(self) -> None:
         """See `Drive`. Raises `DriveError`, with the time it took."""
         if self._taken:
             raise DriveError(f"drive {self.name} does not return from an earlier call")
-        begun = self._begin(DriveCall.ENABLE)
-        try:
-            self._drive.enable()
-        except DriveError as cause:
-            raise DriveError(f"{cause} (enable took {self._took(begun):.3g} ms)") from cause
-        except _ERRORS as cause:
-            raise DriveError(self._told(DriveCall.ENABLE, begun, cause)) from cause
-        finally:
-            self._end(begun)
+        self._may_refuse(DriveCall.ENABLE, self._drive.enable)
 
     def read(self, now: float, position: Array, rate: Array) -> int:
         """See `Drive`; of one that raises: nothing is known, and a fault."""
@@ -196,6 +181,17 @@ class WatchedDrive:
         if owed is not None:
             self._order(owed)
         return took
+
+    def _may_refuse(self, call: DriveCall, ask: Callable[[], None]) -> None:
+        begun = self._begin(call)
+        try:
+            ask()
+        except DriveError as cause:
+            raise DriveError(f"{cause} ({call.word} took {self._took(begun):.3g} ms)") from cause
+        except _ERRORS as cause:
+            raise DriveError(self._told(call, begun, cause)) from cause
+        finally:
+            self._end(begun)
 
     def _order(self, call: DriveCall) -> None:
         if self._taken:

@@ -193,9 +193,10 @@ def main() -> None:
     os.nice(5)
     os.sched_setaffinity(0, range(os.cpu_count() or 1))  # not where the loop was put, should it start us anew
     if given.memory is None:
-        given.memory, given.runs = (Path(sys.stdin.readline().strip()) for _ in range(2))
-        if os.getppid() != given.parent:
-            return
+        memory, runs = (sys.stdin.readline().strip() for _ in range(2))
+        if not runs or os.getppid() != given.parent:
+            return  # who started us ended before there was anything to record
+        given.memory, given.runs = Path(memory), Path(runs)
     shared = Shared(given.memory)
     shared.header["recorder_pid"] = os.getpid()
     recorder = Recorder(shared, given.runs)

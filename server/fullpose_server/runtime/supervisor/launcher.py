@@ -35,7 +35,7 @@ class Launcher:
     async def spawn(self, config: RigConfig) -> int:
         """Start a process with `config`; returns its pid when it is ready. Raises `HostError`."""
         self._paths.notes.unlink(missing_ok=True)
-        await asyncio.to_thread(durable.write, self._paths.config, configs.encode(config))
+        await asyncio.to_thread(self._tell, config)
         try:
             await self._begun()
             await self._ready(config.name)
@@ -43,6 +43,10 @@ class Launcher:
             if self._spare is not None:
                 self._spare.make_soon()
         return self._child
+
+    def _tell(self, config: RigConfig) -> None:
+        with durable.replacing(self._paths.config) as draft:
+            draft.write_bytes(configs.encode(config))
 
     async def _ready(self, rig: str) -> None:
         """Wait until the child is. Raises `HostError`, and it is no more."""

@@ -1,6 +1,9 @@
 """The recorder on a shared memory that the test fills, a tick a millisecond; and once on a whole rig process."""
 
 import asyncio
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -238,3 +241,10 @@ def test_a_fault_of_a_move_is_kept_though_nothing_flew(tmp_path: Path, kind: str
         assert after_s >= 1.0
 
     asyncio.run(move())
+
+
+def test_a_recorder_in_reserve_that_is_never_needed_ends_without_a_word() -> None:
+    module = "fullpose_server.runtime.recording.recorder"
+    command = [sys.executable, "-m", module, "--parent", str(os.getpid())]
+    ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
