@@ -13,6 +13,7 @@ from starlette.requests import HTTPConnection
 
 from fullpose_server.api import errors, openapi
 from fullpose_server.api import uploads as uploading
+from fullpose_server.api.admission import Admission
 from fullpose_server.api.body_limit import BodyLimit
 from fullpose_server.api.console import API_PAGE, console
 from fullpose_server.api.origin import OriginGuard
@@ -25,6 +26,7 @@ from fullpose_server.api.routes import (
     compare,
     health,
     live,
+    login,
     plans,
     replay,
     rigs,
@@ -34,7 +36,9 @@ from fullpose_server.api.routes import (
     solve,
     stop,
     stream,
+    tokens,
     trajectories,
+    users,
 )
 from fullpose_server.api.socket_limit import SocketLimit
 from fullpose_server.scene.errors import PayloadMeshError, SceneError, SceneSocketError
@@ -60,6 +64,9 @@ ROUTES = (
     runs,
     alarms,
     audit,
+    login,
+    users,
+    tokens,
     health,
 )
 DESCRIPTION = (
@@ -94,6 +101,7 @@ def create_app(settings: Settings) -> FastAPI:
     larger = {f"{API}/trajectories": uploads, f"{API}/solve": settings.max_json_bytes}
     app.add_middleware(BodyLimit, settings=settings, larger=larger)
     app.add_middleware(SocketLimit, settings=settings)
+    app.add_middleware(Admission)
     app.add_middleware(OriginGuard, settings=settings)
     app.add_middleware(RequestLog, times=app.state.requests)
     app.add_middleware(CorrelationIdMiddleware)
@@ -127,6 +135,7 @@ def _lifespan(settings: Settings) -> Callable[[FastAPI], Any]:
         async with serving(settings, app.state.scenes) as served:
             app.state.on_demand = served.scenes
             app.state.services = served.services
+            app.state.people = served.services.people
             _match_once(app)
             _load_once()
             yield

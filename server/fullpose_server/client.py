@@ -48,13 +48,15 @@ class _Lease:
 class Client:
     """One server, one operator. Use `async with`; raises `ClientError` from every call."""
 
-    def __init__(self, url: str, name: str = "python", timeout_s: float = 30.0) -> None:
+    def __init__(self, url: str, name: str = "python", timeout_s: float = 30.0, token: str | None = None) -> None:
+        """`token`: of a server with users (`fullpose token create`); its person is who commands then."""
         self.url = url.rstrip("/")
         self.name = name
         self._leases: dict[str, _Lease] = {}  # by rig: each rig has epochs of its own
         self._live_keys: dict[str, str] = {}  # of the live sources that were loaded last, by rig
+        self._headers = {"X-Fullpose-Client": name} | ({} if token is None else {"Authorization": f"Bearer {token}"})
         self._http = httpx.AsyncClient(
-            base_url=self.url + API, headers={"X-Fullpose-Client": name}, timeout=timeout_s, trust_env=False
+            base_url=self.url + API, headers=self._headers, timeout=timeout_s, trust_env=False
         )
 
     async def __aenter__(self) -> Self:
@@ -193,7 +195,7 @@ class Client:
         """The rig's stream, subscribed; the first message is the server's hello."""
         url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/stream"
         try:
-            async with connect(url, proxy=None, max_size=None) as socket:
+            async with connect(url, proxy=None, max_size=None, additional_headers=self._headers) as socket:
                 await socket.send(json.dumps({"type": "subscribe"} | subscription))
                 yield socket
         except (ConnectionClosed, InvalidHandshake, OSError) as error:
@@ -212,9 +214,8 @@ class Client:
         else:
             message.setdefault("key", self._live_keys.get(rig))
         url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/live"
-        name = {"X-Fullpose-Client": self.name}
         try:
-            async with connect(url, proxy=None, additional_headers=name, compression=None) as socket:
+            async with connect(url, proxy=None, additional_headers=self._headers, compression=None) as socket:
                 await socket.send(json.dumps(message))
                 opened = json.loads(await socket.recv())
                 if opened["type"] != "opened":

@@ -30,7 +30,8 @@ class Settings(BaseSettings):
     host: str = "127.0.0.1"
     port: int = Field(default=8642, ge=0, le=65535)
     data_dir: Path = Field(default_factory=default_data_dir)
-    allow_unauthenticated_network: bool = False  # listen beyond loopback though no users are configured
+    session_hours: float = Field(default=12.0, gt=0.0, le=720.0)  # of a person who signed in with a browser
+    trusted_proxies: tuple[str, ...] = ("127.0.0.1", "::1")  # who may say for whom they ask (X-Forwarded-For, -Proto)
     allowed_hosts: tuple[str, ...] = ()  # names, beside localhost and addresses, that browsers may reach this server by
     allowed_origins: tuple[str, ...] = ()  # pages of other origins that may use the API
     # What one request may cost, and all of them together. Beyond it the answer is 413, 422, 429 or 507, and says so.

@@ -17,6 +17,7 @@ import numpy as np
 
 from fullpose_server.api.deps import Services
 from fullpose_server.api.offload.pool import Offload
+from fullpose_server.api.people import People
 from fullpose_server.errors import DamagedError, ServerError
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.rig_file import RigStore
@@ -42,6 +43,7 @@ from fullpose_server.store.audit import AuditLog
 from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
 from fullpose_server.store.disk import Disk
+from fullpose_server.store.people import PeopleStore
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.quarantine import Quarantine
 from fullpose_server.store.trajectories import TrajectoryStore
@@ -91,6 +93,8 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         await services.hosts.adopt()
         stack.push_async_callback(services.upkeep.close)
         services.upkeep.start()
+        stack.push_async_callback(services.people.close)
+        services.people.start()
         yield served
 
 
@@ -147,6 +151,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
             partial(scrub, plans, trajectories, comparisons, runs, quarantine),
             partial(_retain, settings, runs, alarms),
         ),
+        people=People(PeopleStore(database)),
         uploads=_emptied(folder / "uploads"),
     )
     return Served(services, on_demand)

@@ -2,6 +2,7 @@
 
 import asyncio
 import secrets
+import time
 from collections.abc import Coroutine
 from typing import Any
 
@@ -12,8 +13,10 @@ from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.session.errors import IllegalCommandError
 from fullpose_server.session.states import Command, State
+from fullpose_server.store.audit_entry import AuditEntry
 
 SECRET_BYTES = 32
+_LONGEST_NAME = 64
 
 
 def new_secret() -> str:
@@ -61,3 +64,19 @@ def audit(
 ) -> None:
     """Have written down who commanded what, and what came of it; nobody waits for that. `lease`: epoch, sequence."""
     services.trail.follow(audit_entry(rig, who, word, reply, args, lease))
+
+
+def audit_of_people(
+    services: Services,
+    who: str,
+    word: str,
+    address: str | None,
+    *,
+    about: str | None = None,
+    refused: str | None = None,
+) -> None:
+    """Have written down who signed in, or changed what about whom; it is no rig's."""
+    told = {"from": address} if about is None else {"from": address, "about": about}
+    states = ("", "")
+    entry = AuditEntry(time.time(), who[:_LONGEST_NAME], "", word, told, None, states, refused is None, refused)
+    services.trail.follow(entry)

@@ -1,5 +1,6 @@
 """What the routes work with: one object, built by the app's lifespan, reached through `Annotated` dependencies."""
 
+import asyncio
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,10 +13,13 @@ from starlette.requests import HTTPConnection
 
 from fullpose_server.api.front import FrontStatus
 from fullpose_server.api.offload.pool import Offload
+from fullpose_server.api.people import People
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.stopping import is_name, who_stops
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.formats.rig_file import RigStore
+from fullpose_server.people.admitted import Credential
+from fullpose_server.people.attempts import Attempts
 from fullpose_server.planning.comparisons import Comparisons
 from fullpose_server.planning.plan_queue import PlanQueue
 from fullpose_server.planning.upkeep import Upkeep
@@ -70,7 +74,10 @@ class Services:
     disk: Disk
     quarantine: Quarantine
     upkeep: Upkeep
+    people: People
     uploads: Path  # where what is being received goes
+    attempts: Attempts = field(default_factory=Attempts)
+    hashing: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(2))  # 64 MiB and a core each
     front: FrontStatus = field(default_factory=FrontStatus)
     frames: dict[str, FrameSource] = field(default_factory=dict)
     live_sources: set[str] = field(default_factory=set)  # rigs that have one connected
@@ -87,17 +94,32 @@ async def _services(connection: HTTPConnection) -> Services:
 _CLIENT = Header(description="Who commands, while no users are configured: a name for the lease and the audit")
 
 
-async def _who(connection: HTTPConnection, x_fullpose_client: Annotated[str | None, _CLIENT] = None) -> str:
+async def _person(connection: HTTPConnection) -> Credential | None:
+    person: Credential | None = getattr(connection.state, "person", None)
+    return person
+
+
+PersonDep = Annotated[Credential | None, Depends(_person)]  # None: nobody known, and nobody need be
+
+
+async def _who(
+    connection: HTTPConnection, person: PersonDep, x_fullpose_client: Annotated[str | None, _CLIENT] = None
+) -> str:
+    if person is not None:
+        return person.who
     if x_fullpose_client is not None and not is_name(x_fullpose_client):
         raise ApiError(422, "validation", "X-Fullpose-Client: expected up to 64 letters, digits or . @ : + - _")
-    return who_stops(x_fullpose_client, _address(connection))
+    return who_stops(x_fullpose_client, address_of(connection))
 
 
-async def _who_stops(connection: HTTPConnection, x_fullpose_client: Annotated[str | None, _CLIENT] = None) -> str:
-    return who_stops(x_fullpose_client, _address(connection))
+async def _who_stops(
+    connection: HTTPConnection, person: PersonDep, x_fullpose_client: Annotated[str | None, _CLIENT] = None
+) -> str:
+    return who_stops(x_fullpose_client, address_of(connection)) if person is None else person.who
 
 
-def _address(connection: HTTPConnection) -> str | None:
+def address_of(connection: HTTPConnection) -> str | None:
+    """Where it comes from."""
     return None if connection.client is None else connection.client.host
 
 

@@ -56,7 +56,7 @@ def install(app: FastAPI) -> None:
                 listed = ", ".join(methods)
                 refusal = ApiError(405, "method", f"{request.method} {request.url.path}: expected {listed}")
                 return problem_response(refusal.problem, request, {"Allow": listed})
-        return problem_response(problem_of(error), request)
+        return problem_response(problem_of(error), request, error.headers if isinstance(error, ApiError) else None)
 
     for kind in (ApiError, HTTPException, RequestValidationError, ServerError, SolverError, OSError):
         app.add_exception_handler(kind, answer)

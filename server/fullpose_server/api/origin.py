@@ -12,6 +12,7 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from fullpose_server.api.close_codes import FORBIDDEN
 from fullpose_server.api.paths import API, STOP_CHANNEL, of_rig
 from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.session.states import NEEDS_NO_LEASE
@@ -36,7 +37,7 @@ class OriginGuard:
         if reason is None:
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
-            await send({"type": "websocket.close", "code": 4403, "reason": reason[:120]})
+            await send({"type": "websocket.close", "code": FORBIDDEN, "reason": reason[:120]})
         else:
             await problem_response(ApiError(403, "origin", reason).problem)(scope, receive, send)
 

@@ -13,13 +13,13 @@ from fullpose_server.api.schemas.base import FieldProblem, Problem
 MEDIA_TYPE = "application/problem+json"
 RETRY_S = 5  # what a client is told to wait where the server has too much to do, or no room
 LONGEST = 2000  # characters of a detail
-_SECRET = {"lease", "secret", "key"}  # what a problem never shows the value of
+_SECRET = {"lease", "secret", "key", "password", "current", "new"}  # what a problem never shows the value of
 _ABRIDGING = reprlib.Repr()  # never the whole of a large value
 _ABRIDGING.maxstring = _ABRIDGING.maxother = _ABRIDGING.maxlong = 120
 
 
 class ApiError(Exception):
-    """Root of the errors that the API raises on purpose; it carries its problem document."""
+    """Root of the errors that the API raises on purpose; it carries its problem document, and headers of the answer."""
 
     def __init__(
         self,
@@ -31,8 +31,10 @@ class ApiError(Exception):
         state: str | None = None,
         command: str | None = None,
         allowed: Sequence[str] | None = None,
+        headers: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__(detail)
+        self.headers = headers
         self.problem = Problem(
             type=f"urn:fullpose:problem:{code}",
             title=HTTPStatus(status).phrase,

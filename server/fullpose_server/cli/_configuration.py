@@ -17,12 +17,13 @@ from pydantic_settings import SettingsError
 
 from fullpose_server.errors import FileError, ServerError
 from fullpose_server.settings import Settings
+from fullpose_server.store.people_known import has_people
 
 PREFIX = "FULLPOSE_"
 FILE_VARIABLE = f"{PREFIX}CONFIG"
-UNAUTHENTICATED = (
-    "no users are configured, so this server listens on this machine only: use --host 127.0.0.1, or allow the network "
-    "with FULLPOSE_ALLOW_UNAUTHENTICATED_NETWORK=true"
+NOBODY = (
+    "no users are configured, so this server listens on this machine only: make one with `fullpose user add NAME --role"
+    " admin` for this data folder, or use --host 127.0.0.1"
 )
 
 
@@ -68,9 +69,15 @@ def configured(
         raise ConfigurationError("; ".join(_told(detail, origins) for detail in error.errors())) from None
     except SettingsError as error:  # a variable that should be JSON and is none
         raise ConfigurationError(f"settings: {error}") from None
-    if not settings.loopback and not settings.allow_unauthenticated_network:
-        raise ConfigurationError(f"{origins['host']} = {settings.host}: {UNAUTHENTICATED}")
     return Configuration(settings, origins)
+
+
+def to_serve(found: Configuration) -> Configuration:
+    """The same, where a server may start with it. Raises `ConfigurationError`: the network is for those who sign in."""
+    settings = found.settings
+    if not settings.loopback and not has_people(settings.data_dir):
+        raise ConfigurationError(f"{found.origins['host']} = {settings.host}: {NOBODY}")
+    return found
 
 
 def _read(file: Path) -> dict[str, Any]:

@@ -52,16 +52,21 @@ def _prewarm() -> None:
 
 
 async def _run(settings: Settings, listener: socket.socket, url: str, ready: Ready) -> None:
-    gate = GateProcess.spawn(listener, settings.log)  # it loads while the server does
+    gate = GateProcess.spawn(listener, settings.log, settings.trusted_proxies)  # it loads while the server does
     app = create_app(settings)
-    config = served_by(app, timeout_graceful_shutdown=3, ws_max_size=settings.max_message_bytes)
+    config = served_by(
+        app,
+        timeout_graceful_shutdown=3,
+        ws_max_size=settings.max_message_bytes,
+        forwarded_allow_ips=list(settings.trusted_proxies),
+    )
     keeper: Keeper | None = None
     try:
         async with app.router.lifespan_context(app):
             server = _Server(config)
             services: Services = app.state.services
             served, most = Connections(config, server.server_state), min(settings.max_connections, files() - FILES_KEPT)
-            keeper = Keeper(listener, gate, served, most, services.hosts.running, services.trail, services.front)
+            keeper = Keeper(listener, gate, served, most, services)
             serving = asyncio.create_task(server.serve(sockets=[]))  # none of its own: the gate has it
             sys.stdout.write(f"{url}\n")
             sys.stdout.flush()

@@ -26,9 +26,9 @@ def check(
     data_dir: Annotated[Path | None, typer.Option(help="Where everything is to be kept.")] = None,
 ) -> None:
     """Print the settings as a file of them, each with its origin. Exit 2 where one cannot be, or is none."""
-    from fullpose_server.cli._configuration import configured
+    from fullpose_server.cli._configuration import configured, to_serve
 
-    found = configured(data_dir=data_dir, config=config)
+    found = to_serve(configured(data_dir=data_dir, config=config))
     for name, value in found.settings.model_dump(mode="json").items():
         line = f"# {name} is unset" if value is None else f"{name} = {_toml(value)}"
         typer.echo(f"{line:<48}  # {found.origins.get(name, 'default')}")

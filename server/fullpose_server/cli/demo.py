@@ -36,11 +36,11 @@ def demo(
     config: Config = None,
 ) -> None:
     """Serve until Ctrl-C; open the address in a browser."""
-    from fullpose_server.cli._configuration import configured
+    from fullpose_server.cli._configuration import configured, to_serve
     from fullpose_server.cli._serving import run
     from fullpose_server.settings import default_data_dir
 
-    run(configured(host, port, data_dir or default_data_dir() / "demo", config).settings, fly)
+    run(to_serve(configured(host, port, data_dir or default_data_dir() / "demo", config)).settings, fly)
 
 
 async def fly(url: str) -> None:

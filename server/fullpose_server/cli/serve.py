@@ -20,10 +20,10 @@ def serve(
     config: Config = None,
 ) -> None:
     """Serve until Ctrl-C. Every setting is also read from the environment, as FULLPOSE_HOST, and from a file."""
-    from fullpose_server.cli._configuration import configured
+    from fullpose_server.cli._configuration import configured, to_serve
     from fullpose_server.cli._serving import run
 
     async def ready(_url: str) -> None:
         return
 
-    run(configured(host, port, data_dir, config).settings, ready)
+    run(to_serve(configured(host, port, data_dir, config)).settings, ready)

@@ -10,23 +10,25 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
+from fullpose_server.api.close_codes import UNKNOWN
 from fullpose_server.api.paths import API, STOP_CHANNEL
 from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.api.stopping import CLIENT_HEADER, answer, status_of, who_stops
 from fullpose_server.api.streams.stop_channel import StopChannel
 from fullpose_server.gate.rigs import Rigs
+from fullpose_server.gate.who import Who
 from fullpose_server.session.states import Command
 
 # What a client still sends of a body is taken for so long: it gets its answer then, and no reset before.
 _LINGER_S = 2.0
 
 
-def create_app(rigs: Rigs) -> Starlette:
+def create_app(rigs: Rigs, who: Who) -> Starlette:
     """The gate as an ASGI app."""
     return Starlette(
         routes=[
-            Route(f"{API}/rigs/{{rig}}/{{command}}", _Stop(rigs), methods=["POST"]),
-            WebSocketRoute(f"{API}{STOP_CHANNEL}", _Channel(rigs)),
+            Route(f"{API}/rigs/{{rig}}/{{command}}", _Stop(rigs, who), methods=["POST"]),
+            WebSocketRoute(f"{API}{STOP_CHANNEL}", _Channel(rigs, who)),
         ]
     )
 
@@ -34,19 +36,31 @@ def create_app(rigs: Rigs) -> Starlette:
 class _Channel:
     """The stop channel of a page or program."""
 
-    def __init__(self, rigs: Rigs) -> None:
+    def __init__(self, rigs: Rigs, who: Who) -> None:
         self._rigs = rigs
+        self._who = who
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         socket = WebSocket(scope, receive, send)
-        await StopChannel(socket, self._rigs.stop, socket.headers.get(CLIENT_HEADER)).run()
+
+        def known() -> str | None:
+            person = self._who.admit(socket.headers.get("authorization"), socket.headers.get("cookie"))
+            return None if person is None else person.who
+
+        try:
+            known()
+        except ApiError as error:
+            await socket.close(UNKNOWN, error.problem.detail)
+            return
+        await StopChannel(socket, self._rigs.stop, socket.headers.get(CLIENT_HEADER), known).run()
 
 
 class _Stop:
     """One stop by HTTP, answered before its body has come."""
 
-    def __init__(self, rigs: Rigs) -> None:
+    def __init__(self, rigs: Rigs, who: Who) -> None:
         self._rigs = rigs
+        self._who = who
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         request = Request(scope, receive)
@@ -54,8 +68,9 @@ class _Stop:
         if word == "commands":  # whole, and looked into before it was given to us
             word = json.decode(await request.body())["command"]
         address = None if request.client is None else request.client.host
-        who = who_stops(request.headers.get(CLIENT_HEADER), address)
         try:
+            person = self._who.admit(request.headers.get("authorization"), request.headers.get("cookie"))
+            who = who_stops(request.headers.get(CLIENT_HEADER), address) if person is None else person.who
             done = answer(word, await self._rigs.stop(request.path_params["rig"], Command(word), who))
             response = Response(done.model_dump_json(), status_of(done), media_type="application/json")
         except ApiError as error:

@@ -9,13 +9,13 @@ import sys
 import time
 from dataclasses import dataclass
 
-from fullpose_server.api.front import FrontStatus
+from fullpose_server.api.deps import Services
 from fullpose_server.api.problems import MEDIA_TYPE, ApiError
 from fullpose_server.gate import messages
 from fullpose_server.gate.served import Connections
 from fullpose_server.logs import LogSettings
-from fullpose_server.runtime.supervisor.running import RunningProcess, RunningProcesses
-from fullpose_server.store.audit_trail import AuditTrail
+from fullpose_server.people.admitted import Admitted
+from fullpose_server.runtime.supervisor.running import RunningProcess
 
 RETRY_S = 0.5
 START_S = 180.0  # for it to begin: a starved machine takes long over the imports, and to begin anew takes as long
@@ -32,21 +32,23 @@ class GateProcess:
     process: "subprocess.Popen[bytes]"
     link: socket.socket
     log: LogSettings
+    proxies: tuple[str, ...]
 
     @classmethod
-    def spawn(cls, listener: socket.socket, log: LogSettings) -> "GateProcess":
+    def spawn(cls, listener: socket.socket, log: LogSettings, proxies: tuple[str, ...] = ()) -> "GateProcess":
         """Start one: it accepts at once, and waits for what it may stop and whom it may hand over to."""
         ours, theirs = messages.link()
         with theirs:
+            named = [word for each in proxies for word in ("--proxy", each)]
             numbers = [str(listener.fileno()), str(theirs.fileno())]
             command = [sys.executable, "-m", "fullpose_server.gate.process"]
             process = subprocess.Popen(
-                [*command, "--listener", numbers[0], "--link", numbers[1], *log.arguments()],
+                [*command, "--listener", numbers[0], "--link", numbers[1], *named, *log.arguments()],
                 pass_fds=(listener.fileno(), theirs.fileno()),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
             )
-        return cls(process, ours, log)
+        return cls(process, ours, log, proxies)
 
     def end(self) -> None:
         """It ends when its link does; one that does not is killed."""
@@ -70,23 +72,23 @@ class Keeper:
         gate: GateProcess,
         served: Connections,
         most: int,
-        running: RunningProcesses,
-        trail: AuditTrail,
-        status: FrontStatus,
+        services: Services,
     ) -> None:
         self._listener = listener
         self._served = served
         self._most = most
-        self._running = running
-        self._trail = trail
-        self._status = status
+        self._running = services.hosts.running
+        self._people = services.people
+        self._trail = services.trail
+        self._status = services.front
         self._loop = asyncio.get_running_loop()
         self._ending = False
         self._gate = gate
         self._heard = time.monotonic()
         self._begun = False  # it has told something
-        running.watch(self._changed)
+        self._running.watch(self._changed)
         self._begin()
+        self._people.watch(self._let_in)
         self._watch = asyncio.create_task(self._watch_on(), name="watch the stop gate")
 
     def ending(self) -> None:
@@ -109,6 +111,7 @@ class Keeper:
         self._loop.add_reader(self._gate.link, self._hear, self._gate)
         for process in self._running.all():
             self._changed(process.rig, process)
+        self._let_in(self._people.admitted)
         if self._ending:
             self.ending()
 
@@ -122,7 +125,7 @@ class Keeper:
                 self._lost(f"it has told nothing for {patience_s:g} s")
             if self._status.down_since is not None:
                 await asyncio.to_thread(self._gate.end)
-                self._gate = GateProcess.spawn(self._listener, self._gate.log)
+                self._gate = GateProcess.spawn(self._listener, self._gate.log, self._gate.proxies)
                 self._status.down_since = None
                 self._begin()
 
@@ -139,6 +142,10 @@ class Keeper:
             self._send(messages.RigLeft(rig))
         else:
             self._send(messages.RigRuns(rig, process.pid, str(process.memory)))
+
+    def _let_in(self, admitted: Admitted) -> None:
+        for part in messages.let_in(admitted):
+            self._send(part)
 
     def _send(self, message: messages.ToGate) -> None:
         try:

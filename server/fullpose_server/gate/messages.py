@@ -5,9 +5,11 @@ from dataclasses import dataclass
 
 import msgspec
 
+from fullpose_server.people.admitted import Admitted, Credential
 from fullpose_server.store.audit_entry import AuditEntry
 
 CONNECTION, MESSAGE = b"C", b"M"
+_PART = 500  # credentials in one packet
 MAX_PACKET = 1 << 18  # [bytes] more than a first request may have
 
 
@@ -29,6 +31,15 @@ class Ending(msgspec.Struct, tag=True, frozen=True):
     """Server to gate: nothing but stops is served any more."""
 
 
+class LetIn(msgspec.Struct, tag=True, frozen=True):
+    """Server to gate: who may stop a rig, a part of them; from `first` to `last` it replaces what was told before."""
+
+    people: bool  # False: there are none, and anybody may
+    credentials: list[Credential]
+    first: bool
+    last: bool
+
+
 class Stopped(msgspec.Struct, tag=True, frozen=True):
     """Gate to server: for the audit."""
 
@@ -39,7 +50,7 @@ class Alive(msgspec.Struct, tag=True, frozen=True):
     """Gate to server: nothing else to say."""
 
 
-ToGate = RigRuns | RigLeft | Ending
+ToGate = RigRuns | RigLeft | LetIn | Ending
 ToServer = Stopped | Alive
 _to_gate = msgspec.json.Decoder(ToGate).decode
 _to_server = msgspec.json.Decoder(ToServer).decode
@@ -58,6 +69,14 @@ class Passed:
 
     socket: socket.socket
     data: bytes
+
+
+def let_in(admitted: Admitted) -> list[LetIn]:
+    """Who is let in, as the messages that tell it."""
+    held = admitted.all()
+    parts = [held[begin : begin + _PART] for begin in range(0, len(held), _PART)] or [[]]
+    ends = len(parts) - 1
+    return [LetIn(admitted.people, part, first=i == 0, last=i == ends) for i, part in enumerate(parts)]
 
 
 def link() -> tuple[socket.socket, socket.socket]:

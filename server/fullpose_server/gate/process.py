@@ -23,6 +23,7 @@ from fullpose_server.gate.first_request import FirstRequest, StopOf
 from fullpose_server.gate.rigs import Rigs
 from fullpose_server.gate.served import Connections, served_by
 from fullpose_server.gate.system import GATE, before_others, files
+from fullpose_server.gate.who import Who
 from fullpose_server.logs import LogFormat, LogLevel, LogSettings, configure
 
 ASK_S = 10.0  # so long a connection may take to ask for something
@@ -48,7 +49,7 @@ class Waiting:
 class Gate:
     """One gate, on an event loop of its own."""
 
-    def __init__(self, listener: socket.socket, link: socket.socket, most: int) -> None:
+    def __init__(self, listener: socket.socket, link: socket.socket, most: int, proxies: list[str]) -> None:
         self._listener = listener
         self._link = link
         self._most = max(16, most - RESERVE)
@@ -59,7 +60,9 @@ class Gate:
         self._ending = False
         self._gone = asyncio.Event()
         self._rigs = Rigs(lambda entry: self._tell(messages.Stopped(entry)))
-        config = served_by(create_app(self._rigs), ws_max_size=messages.MAX_PACKET)
+        self._who = Who()
+        app = create_app(self._rigs, self._who)
+        config = served_by(app, ws_max_size=messages.MAX_PACKET, forwarded_allow_ips=proxies)
         self._served = Connections(config, ServerState())
 
     async def run(self) -> None:
@@ -156,6 +159,8 @@ class Gate:
                 self._rigs.runs(rig, pid, Path(memory))
             case messages.RigLeft(rig):
                 self._rigs.left(rig)
+            case messages.LetIn():
+                self._who.take(message)
             case messages.Ending():
                 self._ending = True
             case None:
@@ -191,6 +196,7 @@ def main() -> None:
     arguments = argparse.ArgumentParser(description="The stop gate of one server.")
     arguments.add_argument("--listener", type=int, required=True)
     arguments.add_argument("--link", type=int, required=True)
+    arguments.add_argument("--proxy", action="append", default=[], help="who may say for whom they ask")
     arguments.add_argument("--log-format", type=LogFormat, required=True)
     arguments.add_argument("--log-level", type=LogLevel, required=True)
     given = arguments.parse_args()
@@ -202,7 +208,7 @@ def main() -> None:
     listener.setblocking(False)
 
     async def gate() -> None:
-        await Gate(listener, link, files()).run()
+        await Gate(listener, link, files(), given.proxy).run()
 
     asyncio.run(gate())
 

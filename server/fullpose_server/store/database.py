@@ -2,7 +2,7 @@
 
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from fullpose_server.errors import DamagedError, ServerError, StorageBusyError, StorageError, StorageFullError
 
-HEAD = "0004"  # the newest revision in migrations/versions
+HEAD = "0005"  # the newest revision in migrations/versions
 WAIT_S = 2.0  # for another program that holds it: the threads that wait here are not many
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 MIGRATIONS = Path(__file__).parent / "migrations"
@@ -34,6 +34,8 @@ class Database:
     def __init__(self, path: Path, busy_s: float = WAIT_S) -> None:
         """Open it, or make it. Raises `DamagedError`, `NewerDatabaseError`, `StorageError`."""
         path.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(OSError):  # SQLite says better what is wrong
+            path.touch(mode=0o600, exist_ok=True)  # hashes of passwords are in it
         self.engine = _engine(path, busy_s)
         try:
             _check(self.engine)

@@ -135,3 +135,44 @@ class ShelfRow(Table):
     until_s: Mapped[float] = mapped_column(Float)
     by: Mapped[str] = mapped_column(String(128))
     reason: Mapped[str] = mapped_column(String)
+
+
+class UserRow(Table):
+    """A person. `changed` grows with every change to people or credentials, of both tables together."""
+
+    __tablename__ = "users"
+    __table_args__ = (
+        Index("ix_users_changed", "changed"),
+        Index("ix_users_subject", "subject", unique=True),
+    )
+
+    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    role: Mapped[str] = mapped_column(String(16))
+    password: Mapped[str | None] = mapped_column(String)  # its hash; None: they sign in elsewhere, or by token
+    subject: Mapped[str | None] = mapped_column(String)  # who they are to the provider that they sign in at
+    disabled: Mapped[bool]
+    created: Mapped[float] = mapped_column(Float)
+    changed: Mapped[int] = mapped_column(Integer)
+
+
+class CredentialRow(Table):
+    """A token, or a browser's session; `proof` is what is kept of its secret. Without `role` it has the person's."""
+
+    __tablename__ = "credentials"
+    __table_args__ = (
+        Index("ix_credentials_changed", "changed"),
+        Index("ix_credentials_proof", "proof", unique=True),
+        Index("ix_credentials_user", "user", "created"),
+    )
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    proof: Mapped[str] = mapped_column(String(64))
+    user: Mapped[str] = mapped_column(ForeignKey("users.name"))
+    role: Mapped[str | None] = mapped_column(String(16))
+    session: Mapped[bool]
+    label: Mapped[str] = mapped_column(String(200))
+    address: Mapped[str | None] = mapped_column(String(64))
+    created: Mapped[float] = mapped_column(Float)
+    until: Mapped[float | None] = mapped_column(Float)
+    revoked: Mapped[float | None] = mapped_column(Float)
+    changed: Mapped[int] = mapped_column(Integer)

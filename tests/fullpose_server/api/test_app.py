@@ -68,7 +68,7 @@ def test_another_name_for_this_server_is_refused(server: LiveServer) -> None:
     ],
 )
 def test_an_open_network_does_not_open_every_name(bound: str, host: str, answered: bool) -> None:
-    settings = Settings(host=bound, allow_unauthenticated_network=True, allowed_hosts=("rig-7.example",))
+    settings = Settings(host=bound, allowed_hosts=("rig-7.example",))
 
     async def inside(scope: Scope, receive: Receive, send: Send) -> None:
         await Response("inside")(scope, receive, send)

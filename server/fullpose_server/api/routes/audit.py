@@ -35,4 +35,5 @@ def list_audit(
 
 def _out(row: AuditRow) -> AuditOut:
     values = {name: getattr(row, name) for name in AuditOut.model_fields}
-    return AuditOut.model_validate({**values, "at": datetime.fromtimestamp(row.at, UTC)})
+    nobodys = {name: None for name in ("rig", "state_before", "state_after") if not values[name]}
+    return AuditOut.model_validate({**values, **nobodys, "at": datetime.fromtimestamp(row.at, UTC)})

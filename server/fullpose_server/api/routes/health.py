@@ -9,6 +9,7 @@ from fastapi import APIRouter, Request, Response
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.metrics import exposition
 from fullpose_server.api.paths import API
+from fullpose_server.api.schemas.people import AliveOut
 from fullpose_server.api.schemas.records import DiskOut, HealthOut, ServerLimits, VersionOut
 from fullpose_server.api.session_view import health_out
 from fullpose_server.store.database import HEAD
@@ -29,13 +30,20 @@ async def health(services: ServicesDep) -> HealthOut:
         version=VERSION,
         server_time=time.time(),
         uptime_s=time.time() - services.started,
-        authenticated=False,
+        authenticated=services.people.admitted.people,
         planner=services.queue.status,
         limits=ServerLimits(max_upload_bytes=settings.max_upload_bytes, max_solve_samples=settings.max_solve_samples),
         disk=DiskOut(free_bytes=services.disk.free_bytes(), alarm_bytes=services.disk.alarm_bytes),
         rigs=rigs,
         warnings=wrong + _notes(services),
     )
+
+
+@router.get("/alive")
+async def alive(services: ServicesDep) -> AliveOut:
+    """Whether the server answers, and does well: for who looks after it from outside, and need not sign in."""
+    wrong = _wrong(services) + await asyncio.to_thread(_stored, services)
+    return AliveOut(status="degraded" if wrong else "ok")
 
 
 @router.get("/version")
@@ -65,7 +73,7 @@ def _wrong(services: Services) -> list[str]:
     if services.comparisons.status == "stopped":
         found.append("comparisons are made no more")
     found += services.trail.faults() + services.alarm_trail.faults() + services.alarm_watch.faults()
-    found += services.front.faults()
+    found += services.front.faults() + services.people.faults()
     for host in services.hosts.all():
         state = host.snapshot().health
         if not state.rig_alive:
@@ -77,9 +85,6 @@ def _wrong(services: Services) -> list[str]:
 
 
 def _notes(services: Services) -> list[str]:
-    notes = []
-    if services.settings.loopback:
-        notes.append("no users are configured: this server listens on this machine only")
-    else:
-        notes.append("no users are configured, and the network may command: allow_unauthenticated_network is set")
-    return notes
+    if services.people.admitted.people:
+        return []
+    return ["no users are configured: this server listens on this machine only, and whoever is on it may command"]

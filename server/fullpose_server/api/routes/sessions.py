@@ -6,8 +6,9 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Response
 
+from fullpose_server.api.admission import forbidden
 from fullpose_server.api.commanding import audit, by_priority, new_secret, with_rig_file, without_process
-from fullpose_server.api.deps import Services, ServicesDep, WhoDep, WhoStopsDep
+from fullpose_server.api.deps import PersonDep, Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.lease import LeaseGiven, LeaseIn
 from fullpose_server.api.schemas.session import (
@@ -20,6 +21,7 @@ from fullpose_server.api.schemas.session import (
 )
 from fullpose_server.api.session_view import lease_out, session_out
 from fullpose_server.api.stopping import answer, refusal, status_of
+from fullpose_server.people.roles import Role
 from fullpose_server.planning.plan_result import refusal_of
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.runtime.supervisor.errors import HostError, RefusedError, RequestTooLargeError
@@ -57,12 +59,19 @@ async def get_alarms(rig: str, services: ServicesDep) -> list[AlarmOut]:
 
 @router.post("/commands", responses=STOPPED)
 async def command(
-    rig: str, body: Annotated[CommandIn, Body()], services: ServicesDep, who: WhoStopsDep, response: Response
+    rig: str,
+    body: Annotated[CommandIn, Body()],
+    services: ServicesDep,
+    person: PersonDep,
+    who: WhoStopsDep,
+    response: Response,
 ) -> CommandDone:
-    """Command the session. Needs the lease, but for stop and estop."""
+    """Command the session. Needs the lease and an operator, but for stop and estop."""
     if body.command in NEEDS_NO_LEASE:
         done = await _by_priority(services, rig, Command(body.command), who, response)
         return CommandDone(**done.model_dump())
+    if person is not None and not person.role.may(Role.OPERATOR):
+        raise forbidden(person, Role.OPERATOR)
     host = services.hosts.get(rig)
     if host is None:
         raise await _refused_without_process(services, rig, body, who)

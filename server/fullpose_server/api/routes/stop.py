@@ -6,7 +6,7 @@ from typing import Any
 from fastapi import APIRouter, WebSocket
 
 from fullpose_server.api.commanding import by_priority
-from fullpose_server.api.deps import ServicesDep
+from fullpose_server.api.deps import PersonDep, ServicesDep
 from fullpose_server.api.paths import STOP_CHANNEL
 from fullpose_server.api.stopping import CLIENT_HEADER
 from fullpose_server.api.streams.stop_channel import StopChannel
@@ -17,10 +17,11 @@ router = APIRouter(tags=["session"])
 
 
 @router.websocket(STOP_CHANNEL)
-async def stop_channel(socket: WebSocket, services: ServicesDep) -> None:
+async def stop_channel(socket: WebSocket, services: ServicesDep, person: PersonDep) -> None:
     """Stops and E-stops of every rig, and pings."""
 
     def stop(rig: str, command: Command, who: str) -> Coroutine[Any, Any, Reply]:
         return by_priority(services, rig, command, who)
 
-    await StopChannel(socket, stop, socket.headers.get(CLIENT_HEADER)).run()
+    known = None if person is None else person.who  # a channel ends with its person's session
+    await StopChannel(socket, stop, socket.headers.get(CLIENT_HEADER), lambda: known).run()

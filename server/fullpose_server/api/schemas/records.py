@@ -48,13 +48,13 @@ class AuditOut(Wire):
     id: int
     at: datetime
     who: str
-    rig: str
+    rig: str | None = Field(description="Null: it is no rig's, but about people")
     command: str
     args: dict[str, Any]
     lease_epoch: int | None
     lease_sequence: int | None
-    state_before: State
-    state_after: State
+    state_before: State | None
+    state_after: State | None
     accepted: bool
     detail: str | None
 
@@ -87,7 +87,7 @@ class HealthOut(Wire):
     version: str
     server_time: float
     uptime_s: float
-    authenticated: bool = Field(description="False: no users are configured, anyone who reaches the port may command")
+    authenticated: bool = Field(description="Whether one must sign in; else anyone who reaches the port may command")
     planner: RunnerStatus
     limits: ServerLimits
     disk: DiskOut

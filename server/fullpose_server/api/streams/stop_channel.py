@@ -16,6 +16,8 @@ from fullpose_server.api.streams.tasks import NOT_TEXT, Tasks, close_for, send_t
 from fullpose_server.runtime.contract.messages import Reply
 from fullpose_server.session.states import Command
 
+# Who is at the other end, asked before each order; None: nobody known, and nobody need be. Raises `ApiError`.
+Known = Callable[[], str | None]
 # The order stands when it returns; the coroutine, which is to be awaited, waits for the reply and audits it.
 Stop = Callable[[str, Command, str], Coroutine[Any, Any, Reply]]
 _INCOMING: TypeAdapter[StopIn] = TypeAdapter(StopIn)
@@ -24,10 +26,11 @@ _INCOMING: TypeAdapter[StopIn] = TypeAdapter(StopIn)
 class StopChannel:
     """Talks with one client until it leaves. `given` is the name that it came with."""
 
-    def __init__(self, socket: WebSocket, stop: Stop, given: str | None) -> None:
+    def __init__(self, socket: WebSocket, stop: Stop, given: str | None, known: Known) -> None:
         self._socket = socket
         self._stop = stop
         self._given = given
+        self._known = known
         self._answers = Tasks(self._failed)
 
     async def run(self) -> None:
@@ -52,11 +55,19 @@ class StopChannel:
             if isinstance(message, Ping):
                 self._say(Pong(t=message.t, server_time=time.time()))
             else:
-                self._order(message)
+                self._ask(message)
 
-    def _order(self, asked: StopRig) -> None:
+    def _ask(self, asked: StopRig) -> None:
+        try:
+            known = self._known()
+        except ApiError as error:
+            self._say(StopRefused(id=asked.id, problem=error.problem))
+        else:
+            self._order(asked, known)
+
+    def _order(self, asked: StopRig, known: str | None) -> None:
         address = None if self._socket.client is None else self._socket.client.host
-        done = self._stop(asked.rig, Command(asked.type), who_stops(asked.client or self._given, address))
+        done = self._stop(asked.rig, Command(asked.type), known or who_stops(asked.client or self._given, address))
 
         async def answered() -> None:
             await send_text(self._socket, (await self._answer(asked, done)).model_dump_json())

@@ -1,0 +1,85 @@
+"""Who is let in, kept as the rows are: looked up for every request, and looked for anew when somebody changed them."""
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from fullpose_server.errors import ServerError
+from fullpose_server.people.admitted import Admitted
+from fullpose_server.store.people import PeopleStore
+
+LOOK_S = 1.0  # a change on the command line, in another process, is in force as soon as that
+log = logging.getLogger(__name__)
+
+
+class People:
+    """Of one server, from `start` until `close`. Everything but `store` belongs to the event loop's thread."""
+
+    def __init__(self, store: PeopleStore) -> None:
+        self.store = store
+        self.admitted = store.admitted()
+        self._revision = store.revision()
+        self._watching: list[Callable[[Admitted], None]] = []
+        self._open: dict[asyncio.Event, str] = {}  # of a WebSocket each, with its credential's id
+        self._task: asyncio.Task[None] | None = None
+        self._error = ""
+
+    def start(self) -> None:
+        """Look for changes from here on."""
+        self._task = asyncio.create_task(self._look_on(), name="look who is let in")
+
+    async def close(self) -> None:
+        """Look no more."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+
+    def watch(self, tell: Callable[[Admitted], None]) -> None:
+        """Call `tell` at every change."""
+        self._watching.append(tell)
+
+    async def refresh(self) -> None:
+        """Take in what was changed. Raises `StorageError`."""
+        self._revision, admitted = await asyncio.to_thread(self._read)
+        self.admitted = admitted
+        for tell in self._watching:
+            tell(admitted)
+        self._end_those_without()
+
+    def ends_with(self, credential: str) -> asyncio.Event:
+        """Set when this credential holds no longer; to be given back by `forget`."""
+        over = asyncio.Event()
+        self._open[over] = credential
+        return over
+
+    def forget(self, over: asyncio.Event) -> None:
+        """Nobody waits for it any more."""
+        self._open.pop(over, None)
+
+    def faults(self) -> list[str]:
+        """What is wrong with it; nothing while all is well."""
+        return [f"changes to people are not seen: {self._error}"] if self._error else []
+
+    def _read(self) -> tuple[int, Admitted]:
+        revision = self.store.revision()  # before the rows: what changes between is read again
+        return revision, self.store.admitted()
+
+    async def _look_on(self) -> None:
+        while True:
+            await asyncio.sleep(LOOK_S)
+            try:
+                if await asyncio.to_thread(self.store.revision) != self._revision:
+                    await self.refresh()
+                self._error = ""
+            except (ServerError, SQLAlchemyError) as cause:  # who was let in stays so, and nobody else is
+                self._error = str(cause).splitlines()[0]
+            self._end_those_without()
+
+    def _end_those_without(self) -> None:
+        now = time.time()
+        for over, credential in self._open.items():
+            if not self.admitted.still(credential, now):
+                over.set()

@@ -1,0 +1,95 @@
+"""Who is let in: the credentials that hold, as the server knows them and as it tells the stop gate.
+
+A secret is kept nowhere: what is known of it is its sha-256, for a secret is 256 random bits. Passwords are another
+matter (`passwords`).
+"""
+
+import hashlib
+import secrets
+from collections.abc import Iterable
+from http.cookies import CookieError, SimpleCookie
+from typing import NamedTuple
+
+import msgspec
+
+from fullpose_server.people.roles import Role
+
+COOKIE = "fullpose_session"
+TOKEN_PREFIX = "fp_"  # so that a token that was left in a file is known for one
+_BEARER = "bearer "
+_LONGEST = 512
+
+
+class Credential(msgspec.Struct, frozen=True):
+    """A token or a browser's session: whose it is, and until when it holds [s since 1970]."""
+
+    id: str
+    proof: str
+    who: str
+    role: Role
+    until: float | None
+    session: bool  # of a browser: it comes in a cookie
+
+
+class Shown(NamedTuple):
+    """A secret as a request shows it."""
+
+    secret: str
+    cookie: bool
+
+
+class Admitted:
+    """The credentials that hold. Where there are no people, whoever reaches the server is let in."""
+
+    def __init__(self, people: bool, credentials: Iterable[Credential] = ()) -> None:
+        self.people = people
+        self._by_proof = {each.proof: each for each in credentials}
+        self._ids = {each.id: each for each in self._by_proof.values()}
+
+    def all(self) -> list[Credential]:
+        """Every one of them."""
+        return list(self._by_proof.values())
+
+    def find(self, shown: Shown | None, now: float) -> Credential | None:
+        """Whose secret it is, where it holds at `now` [s since 1970]. A cookie is a session's, a token never."""
+        if shown is None:
+            return None
+        found = self._by_proof.get(proof_of(shown.secret))
+        if found is None or found.session != shown.cookie:
+            return None
+        return found if holds(found, now) else None
+
+    def still(self, credential: str, now: float) -> bool:
+        """Whether the credential of this id holds."""
+        found = self._ids.get(credential)
+        return found is not None and holds(found, now)
+
+
+def holds(credential: Credential, now: float) -> bool:
+    """Whether it has not run out."""
+    return credential.until is None or now < credential.until
+
+
+def new_secret(prefix: str = "") -> str:
+    """256 random bits."""
+    return prefix + secrets.token_urlsafe(32)
+
+
+def proof_of(secret: str) -> str:
+    """What is kept of a secret."""
+    return hashlib.sha256(secret.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def shown_by(authorization: str | None, cookie: str | None) -> Shown | None:
+    """The secret in the headers of a request: a bearer token, else the session's cookie. Never one in an address."""
+    if authorization is not None:
+        if authorization[: len(_BEARER)].lower() != _BEARER:
+            return None  # a way to sign in that there is not is none, though a cookie came with it
+        return Shown(authorization[len(_BEARER) :].strip()[:_LONGEST], cookie=False)
+    if cookie is None:
+        return None
+    try:
+        found = SimpleCookie(cookie).get(COOKIE)
+    except CookieError:
+        return None
+    return None if found is None else Shown(found.value[:_LONGEST], cookie=True)
