@@ -122,8 +122,8 @@ class Client:
         """The session as of now."""
         return await self._object("GET", f"/rigs/{quote(rig)}/session")
 
-    async def take_lease(self, rig: str, action: str = "take") -> dict[str, Any]:
-        """Take (or takeover, request, renew, grant) the lease; commands carry it from here on.
+    async def take_lease(self, rig: str, action: str = "take", reason: str | None = None) -> dict[str, Any]:
+        """Take (or takeover, for a `reason`; request, renew, grant) the lease; commands carry it from here on.
 
         To take what is ours already renews it. One that was requested is ours once `wait_lease` has returned.
         """
@@ -135,6 +135,8 @@ class Client:
                 if error.status != 403:
                     raise
         body = {"action": action} if action in ("take", "takeover", "request") else self._proving(rig, action)
+        if reason is not None:
+            body["reason"] = reason
         # What answers a secret tells it once: it is waited for though the rig's process has to start before.
         held = await self._object("POST", f"/rigs/{quote(rig)}/lease", json=body, timeout=START_S)
         given = held.pop("secret", None)

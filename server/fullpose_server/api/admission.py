@@ -45,7 +45,7 @@ class Admission:
         if person is None or scope["type"] == "http":
             await self._app(scope, receive, send)
         else:
-            await _while_let_in(people, person, self._app(scope, receive, over := _Ending(send)), over)
+            await _while_let_in(people, person, self._app(scope, receive, sending := _Ending(send)), sending)
 
 
 def admit(people: People, scope: Scope) -> Credential | None:
@@ -74,34 +74,33 @@ def forbidden(person: Credential, role: Role) -> ApiError:
 
 
 class _Ending:
-    """Sends until it is over."""
+    """Sends until it has ended."""
 
     def __init__(self, send: Send) -> None:
         self._send = send
-        self._accepted = self._over = False
+        self._ended = False
 
     async def __call__(self, message: Message) -> None:
-        if self._over:
+        if self._ended:
             return
-        self._accepted = self._accepted or message["type"] == "websocket.accept"
-        self._over = message["type"] == "websocket.close"
+        self._ended = message["type"] == "websocket.close"
         await self._send(message)
 
     async def end(self, code: int, reason: str) -> None:
         """Close it, whatever the route is doing."""
-        if not self._over:
-            self._over = True
+        if not self._ended:
+            self._ended = True
             await self._send({"type": "websocket.close", "code": code, "reason": reason})
 
 
-async def _while_let_in(people: People, person: Credential, served: Awaitable[None], over: _Ending) -> None:
+async def _while_let_in(people: People, person: Credential, served: Awaitable[None], sending: _Ending) -> None:
     """Serve a WebSocket until it ends, or its person is let in no longer."""
     gone = people.ends_with(person.id)
     serving, waiting = asyncio.ensure_future(served), asyncio.create_task(gone.wait())
     try:
         await asyncio.wait((serving, waiting), return_when=asyncio.FIRST_COMPLETED)
         if not serving.done():
-            await over.end(UNKNOWN, "this token or session has ended: sign in again")
+            await sending.end(UNKNOWN, "this token or session has ended: sign in again")
             await asyncio.wait((serving,), timeout=_END_S)
     finally:
         people.forget(gone)

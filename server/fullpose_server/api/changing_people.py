@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable
+from typing import Any
 
 from fullpose_server.api.deps import Services
 from fullpose_server.api.problems import ApiError
@@ -10,6 +11,10 @@ from fullpose_server.people.passwords import PasswordError
 from fullpose_server.store.people import PersonError
 
 NO_PEOPLE = "no users are configured: the first is made by `fullpose user add NAME --role admin`"
+# Of every route about people.
+REFUSED: dict[int | str, dict[str, Any]] = {
+    409: {"description": "No users are configured, or people would be left as they may not be"},
+}
 
 
 def signed_in(person: Credential | None) -> Credential:

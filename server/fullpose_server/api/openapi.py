@@ -10,6 +10,7 @@ from fastapi.routing import APIWebSocketRoute
 from pydantic.json_schema import models_json_schema
 from starlette.routing import BaseRoute
 
+from fullpose_server.api.access import needed
 from fullpose_server.api.problems import MEDIA_TYPE
 from fullpose_server.api.schemas.base import Problem, Wire
 from fullpose_server.api.schemas.live import LiveOpened, LiveProblem, LiveReplyOut, LiveSampleIn, OpenLive
@@ -17,6 +18,7 @@ from fullpose_server.api.schemas.solve import Opened, OpenSolve, Solved, SolveIn
 from fullpose_server.api.schemas.stop import STOP_IN, STOP_OUT
 from fullpose_server.api.schemas.stream import STREAM_IN, STREAM_OUT
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
+from fullpose_server.people.admitted import COOKIE
 from fullpose_server.runtime.contract.telemetry import Flag
 
 # The messages of each WebSocket, what a client sends and what the server answers; each tagged by its `type`.
@@ -43,13 +45,19 @@ SPOKEN = {
 MESSAGES = (*chain.from_iterable(SENT.values()), TrajectoryIn, SolveIn)
 REFUSALS = {
     "400": "The body is not what its type says",
-    "403": "A foreign page, or a foreign name of this server",
+    "401": "Nobody signed in, where people are configured",
+    "403": "A foreign page, a foreign name of this server, or a role that is not enough",
     "404": "No such thing",
     "408": "The rest of the request did not come",
     "413": "Larger than a bound of this server",
     "422": "Validation Error",
     "503": "The database or a process that it takes does not answer",
     "507": "No room on the disk",
+}
+# How a request shows who asks, where people are configured.
+SIGNED_IN = {
+    "token": {"type": "http", "scheme": "bearer"},
+    "session": {"type": "apiKey", "in": "cookie", "name": COOKIE},
 }
 BUSY: dict[int | str, dict[str, Any]] = {429: {"description": "Too many at once: try again later"}}
 ANSWERS = (Problem, *chain.from_iterable(ANSWERED.values()))
@@ -80,7 +88,11 @@ def contract(app: FastAPI, routes: Iterable[BaseRoute], prefix: str) -> dict[str
         for method, operation in operations.items():
             for status in _statuses(path, method, operation):
                 operation["responses"].setdefault(status, {"description": REFUSALS[status]})
+            if needed({"type": "http", "method": method.upper(), "path": path}) is not None:
+                operation["responses"].setdefault("401", {"description": REFUSALS["401"]})
+                operation["security"] = [{name: []} for name in SIGNED_IN]
             _problems(operation["responses"])
+    document["components"]["securitySchemes"] = SIGNED_IN
     document["components"]["schemas"] = dict(sorted(schemas.items()))
     document["x-websockets"] = _sockets(routes, prefix)
     document["x-telemetry-flags"] = {flag.name.lower(): flag.value for flag in Flag if flag.name}

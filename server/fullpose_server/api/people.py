@@ -51,13 +51,13 @@ class People:
 
     def ends_with(self, credential: str) -> asyncio.Event:
         """Set when this credential holds no longer; to be given back by `forget`."""
-        over = asyncio.Event()
-        self._open[over] = credential
-        return over
+        gone = asyncio.Event()
+        self._open[gone] = credential
+        return gone
 
-    def forget(self, over: asyncio.Event) -> None:
+    def forget(self, gone: asyncio.Event) -> None:
         """Nobody waits for it any more."""
-        self._open.pop(over, None)
+        self._open.pop(gone, None)
 
     def faults(self) -> list[str]:
         """What is wrong with it; nothing while all is well."""
@@ -80,6 +80,6 @@ class People:
 
     def _end_those_without(self) -> None:
         now = time.time()
-        for over, credential in self._open.items():
+        for gone, credential in self._open.items():
             if not self.admitted.still(credential, now):
-                over.set()
+                gone.set()

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fullpose_server.cli import build
-from fullpose_server.cli._configuration import ConfigurationError, configured
+from fullpose_server.cli._configuration import ConfigurationError, configured, to_serve
 from fullpose_server.errors import FileError
 from fullpose_server.settings import Settings
 
@@ -73,7 +73,7 @@ def test_what_cannot_be_is_named_where_it_was_set(tmp_path: Path, text: str, wor
     file = tmp_path / "settings.toml"
     file.write_text(text)
     with pytest.raises(ConfigurationError, match=word):
-        configured(config=file)
+        to_serve(configured(config=file, data_dir=tmp_path))
 
 
 def test_a_file_that_is_none_is_named(tmp_path: Path) -> None:

@@ -473,7 +473,8 @@ export interface paths {
         put?: never;
         /**
          * Lease
-         * @description Take, request, grant, renew or release the lease. Who has its secret holds it.
+         * @description Take, request, grant, renew or release the lease. Who has its secret holds it, and where people sign in it is
+         *     that person's alone.
          */
         post: operations["lease_api_v1_rigs__rig__lease_post"];
         delete?: never;
@@ -1511,6 +1512,11 @@ export interface components {
              * @enum {string}
              */
             action: "take" | "takeover" | "request" | "grant" | "renew" | "release";
+            /**
+             * Reason
+             * @description With takeover: why, for the audit. Needed where people sign in
+             */
+            reason?: string | null;
             /**
              * Secret
              * @description The lease's; with renew, grant and release
@@ -3789,7 +3795,16 @@ export interface operations {
                     "application/json": components["schemas"]["AlarmRecordOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3845,7 +3860,7 @@ export interface operations {
                     "application/json": components["schemas"]["AliveOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3899,7 +3914,16 @@ export interface operations {
                     "application/json": components["schemas"]["AuditOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -3962,7 +3986,16 @@ export interface operations {
                     "application/json": components["schemas"]["ComparisonOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4034,7 +4067,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4137,7 +4179,16 @@ export interface operations {
                     "application/json": components["schemas"]["ComparisonOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4202,7 +4253,16 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4278,7 +4338,16 @@ export interface operations {
                     "text/html": unknown;
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4352,7 +4421,16 @@ export interface operations {
                     "application/json": components["schemas"]["HealthOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4421,7 +4499,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4529,7 +4607,16 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4585,7 +4672,7 @@ export interface operations {
                     "application/json": components["schemas"]["MeOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4652,7 +4739,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4762,7 +4849,16 @@ export interface operations {
                     "application/json": components["schemas"]["MethodOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4809,7 +4905,16 @@ export interface operations {
                     "text/plain": unknown;
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4865,7 +4970,16 @@ export interface operations {
                     "application/json": components["schemas"]["PlanOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -4937,7 +5051,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5040,7 +5163,16 @@ export interface operations {
                     "application/json": components["schemas"]["PlanOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5105,7 +5237,16 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5206,7 +5347,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5311,7 +5461,16 @@ export interface operations {
                     "application/json": components["schemas"]["PlanSamples"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5385,7 +5544,16 @@ export interface operations {
                     "application/json": components["schemas"]["RigOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5434,7 +5602,16 @@ export interface operations {
                     "application/json": components["schemas"]["RigOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5501,7 +5678,16 @@ export interface operations {
                     "application/json": components["schemas"]["AlarmOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5593,7 +5779,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5708,7 +5903,16 @@ export interface operations {
                     "application/json": components["schemas"]["CommandOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5809,7 +6013,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -5925,7 +6138,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6028,7 +6250,16 @@ export interface operations {
                     "application/json": components["schemas"]["SessionOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6107,7 +6338,16 @@ export interface operations {
                     "application/json": components["schemas"]["CommandOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6198,7 +6438,16 @@ export interface operations {
                     "application/json": components["schemas"]["RunOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6256,7 +6505,16 @@ export interface operations {
                     "application/json": components["schemas"]["RunOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6321,7 +6579,16 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6410,7 +6677,16 @@ export interface operations {
                     "text/csv": unknown;
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6475,7 +6751,16 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6549,7 +6834,16 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6636,7 +6930,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6737,8 +7040,26 @@ export interface operations {
                     "application/json": components["schemas"]["TokenOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No users are configured, or people would be left as they may not be */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -6797,7 +7118,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6817,6 +7147,15 @@ export interface operations {
             };
             /** @description The rest of the request did not come */
             408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No users are configured, or people would be left as they may not be */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -6889,7 +7228,16 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -6900,6 +7248,15 @@ export interface operations {
             };
             /** @description No such thing */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No users are configured, or people would be left as they may not be */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -6970,7 +7327,16 @@ export interface operations {
                     "application/json": components["schemas"]["TrajectoryOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -7062,7 +7428,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -7174,7 +7549,16 @@ export interface operations {
                     "application/json": components["schemas"]["TrajectoryOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -7239,7 +7623,16 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -7326,7 +7719,16 @@ export interface operations {
                     "application/json": components["schemas"]["TrajectoryPreview"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -7391,8 +7793,26 @@ export interface operations {
                     "application/json": components["schemas"]["UserOut"][];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No users are configured, or people would be left as they may not be */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7451,7 +7871,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -7471,6 +7900,15 @@ export interface operations {
             };
             /** @description The rest of the request did not come */
             408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No users are configured, or people would be left as they may not be */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7558,7 +7996,16 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;
@@ -7578,6 +8025,15 @@ export interface operations {
             };
             /** @description The rest of the request did not come */
             408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No users are configured, or people would be left as they may not be */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7650,7 +8106,16 @@ export interface operations {
                     "application/json": components["schemas"]["VersionOut"];
                 };
             };
-            /** @description A foreign page, or a foreign name of this server */
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
                     [name: string]: unknown;

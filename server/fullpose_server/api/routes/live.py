@@ -13,7 +13,7 @@ from fastapi import APIRouter, WebSocket
 from pydantic import TypeAdapter
 
 from fullpose_server.api.commanding import audit, new_secret, with_rig_file
-from fullpose_server.api.deps import Services, ServicesDep, WhoDep
+from fullpose_server.api.deps import PersonDep, Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import problem_of
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Wire
@@ -29,6 +29,7 @@ from fullpose_server.api.schemas.session import LiveLoad
 from fullpose_server.api.stopping import answer
 from fullpose_server.api.streams.live_link import LinkLostError, LiveLink, split
 from fullpose_server.api.streams.tasks import GoneError, close_for, send_bytes, send_text
+from fullpose_server.people.admitted import Credential
 from fullpose_server.runtime.live.packets import Kind, LiveReply, LiveStatus, encode_sample
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
@@ -45,7 +46,7 @@ _KINDS = {
 
 
 @router.websocket("/rigs/{rig}/live")
-async def live(rig: str, socket: WebSocket, services: ServicesDep, who: WhoDep) -> None:
+async def live(rig: str, socket: WebSocket, services: ServicesDep, person: PersonDep, who: WhoDep) -> None:
     """open, then samples; each is answered once the rig's loop has taken it. One source a rig."""
     await asyncio.to_thread(services.rigs.get, rig)
     if rig in services.live_sources:
@@ -55,7 +56,7 @@ async def live(rig: str, socket: WebSocket, services: ServicesDep, who: WhoDep) 
         host = await services.hosts.ensure(rig)
         with LiveLink(host.live_socket()) as link:
             await socket.accept()
-            await _Source(services, socket, host, link, who).run()
+            await _Source(services, socket, host, link, person, who).run()
     except HostError as error:
         raise ApiError(503, "rig-process", str(error)) from None
     finally:
@@ -63,8 +64,17 @@ async def live(rig: str, socket: WebSocket, services: ServicesDep, who: WhoDep) 
 
 
 class _Source:
-    def __init__(self, services: Services, socket: WebSocket, host: RigHost, link: LiveLink, who: str) -> None:
+    def __init__(
+        self,
+        services: Services,
+        socket: WebSocket,
+        host: RigHost,
+        link: LiveLink,
+        person: Credential | None,
+        who: str,
+    ) -> None:
         self._services = services
+        self._person = person
         self._socket = socket
         self._host = host
         self._link = link
@@ -143,7 +153,7 @@ class _Source:
         else:
             settings = message.model_dump(include=set(LiveLoad.model_fields))
             args = await with_rig_file(self._services, self._host.name, {"live": settings})
-            reply = await self._host.command("load", args, self._who, message.lease.shown(), key)
+            reply = await self._host.command("load", args, self._who, message.lease.shown(self._person), key)
             numbers = message.lease.epoch, message.lease.sequence
             audit(self._services, self._host.name, self._who, "load", {"live": settings}, numbers, reply)
             answer("load", reply)  # raises the refusal

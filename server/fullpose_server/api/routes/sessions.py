@@ -10,7 +10,7 @@ from fullpose_server.api.admission import forbidden
 from fullpose_server.api.commanding import audit, by_priority, new_secret, with_rig_file, without_process
 from fullpose_server.api.deps import PersonDep, Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
-from fullpose_server.api.schemas.lease import LeaseGiven, LeaseIn
+from fullpose_server.api.schemas.lease import LeaseGiven, LeaseIn, proof_by
 from fullpose_server.api.schemas.session import (
     AlarmOut,
     CommandDone,
@@ -21,12 +21,13 @@ from fullpose_server.api.schemas.session import (
 )
 from fullpose_server.api.session_view import lease_out, session_out
 from fullpose_server.api.stopping import answer, refusal, status_of
+from fullpose_server.people.admitted import Credential
 from fullpose_server.people.roles import Role
 from fullpose_server.planning.plan_result import refusal_of
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.runtime.supervisor.errors import HostError, RefusedError, RequestTooLargeError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
-from fullpose_server.session.lease import GIVES_SECRET, LEASE_NEEDED, LeaseAction, proof_of
+from fullpose_server.session.lease import GIVES_SECRET, LEASE_NEEDED, LeaseAction
 from fullpose_server.session.states import NEEDS_NO_LEASE, Command
 
 router = APIRouter(prefix="/rigs/{rig}", tags=["session"])
@@ -81,8 +82,9 @@ async def command(
     key = new_secret() if "live" in args else None
     if body.command in (Command.LOAD, Command.ARM):
         args = await with_rig_file(services, rig, args)
+    shown = None if body.lease is None else body.lease.shown(person)
     try:
-        reply = await host.command(body.command, args, who, None if body.lease is None else body.lease.shown(), key)
+        reply = await host.command(body.command, args, who, shown, key)
     except RequestTooLargeError as error:
         raise ApiError(413, "too-large", str(error), command=body.command) from None
     audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), _numbers(body), reply)
@@ -105,10 +107,15 @@ async def estop(rig: str, services: ServicesDep, who: WhoStopsDep, response: Res
 
 
 @router.post("/lease", responses=REFUSED)
-async def lease(rig: str, services: ServicesDep, who: WhoDep, body: LeaseIn | None = None) -> LeaseGiven:
-    """Take, request, grant, renew or release the lease. Who has its secret holds it."""
+async def lease(
+    rig: str, services: ServicesDep, person: PersonDep, who: WhoDep, body: LeaseIn | None = None
+) -> LeaseGiven:
+    """Take, request, grant, renew or release the lease. Who has its secret holds it, and where people sign in it is
+    that person's alone."""
     body = body or LeaseIn()
-    return await _lease(services, await _host(services, rig), who, body)
+    if body.action == LeaseAction.TAKEOVER and person is not None and not (body.reason or "").strip():
+        raise ApiError(422, "reason", "reason: expected why the lease is taken over from its holder, for the audit")
+    return await _lease(services, await _host(services, rig), person, who, body)
 
 
 async def _by_priority(services: Services, rig: str, command: Command, who: str, response: Response) -> CommandOut:
@@ -119,14 +126,14 @@ async def _by_priority(services: Services, rig: str, command: Command, who: str,
     return done
 
 
-async def _lease(services: Services, host: RigHost, who: str, body: LeaseIn) -> LeaseGiven:
+async def _lease(services: Services, host: RigHost, person: Credential | None, who: str, body: LeaseIn) -> LeaseGiven:
     before, action = host.snapshot().state, LeaseAction(body.action)
     given = new_secret() if action in GIVES_SECRET else None
-    args = {} if body.to is None else {"to": body.to}
+    args = body.model_dump(include={"to", "reason"}, exclude_none=True)
     try:
-        held = await host.lease(action, who, proof_of(given or body.secret or ""), body.to)
+        held = await host.lease(action, who, proof_by(given or body.secret or "", person), body.to)
     except RefusedError as refused:
-        audit(services, host.name, who, f"lease {action}", {}, None, refused.reply)
+        audit(services, host.name, who, f"lease {action}", args, None, refused.reply)
         raise refusal(refused.reply) from None
     if action is not LeaseAction.RENEW:  # every few seconds; it says nothing that the next command does not
         reply = Reply(ok=True, state_before=before, state_after=host.snapshot().state, revision=host.revision)

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from fastapi import APIRouter, Request
 
 from fullpose_server.api.admission import forbidden
-from fullpose_server.api.changing_people import changed, signed_in
+from fullpose_server.api.changing_people import REFUSED, changed, signed_in
 from fullpose_server.api.commanding import audit_of_people
 from fullpose_server.api.deps import PersonDep, ServicesDep, address_of
 from fullpose_server.api.schemas.people import TokenGiven, TokenIn, TokenOut
@@ -15,7 +15,7 @@ from fullpose_server.people.roles import Role
 from fullpose_server.store.people import Given
 from fullpose_server.store.tables import CredentialRow
 
-router = APIRouter(prefix="/tokens", tags=["people"])
+router = APIRouter(prefix="/tokens", tags=["people"], responses=REFUSED)
 
 
 @router.get("")

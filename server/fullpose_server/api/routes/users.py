@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 
 from fastapi import APIRouter, Request
 
-from fullpose_server.api.changing_people import changed, signed_in
+from fullpose_server.api.changing_people import REFUSED, changed, signed_in
 from fullpose_server.api.commanding import audit_of_people
 from fullpose_server.api.deps import PersonDep, Services, ServicesDep, address_of
 from fullpose_server.api.problems import ApiError
@@ -13,7 +13,7 @@ from fullpose_server.api.schemas.people import UserChange, UserIn, UserOut
 from fullpose_server.people.roles import Role
 from fullpose_server.store.tables import UserRow
 
-router = APIRouter(prefix="/users", tags=["people"])
+router = APIRouter(prefix="/users", tags=["people"], responses=REFUSED)
 
 
 @router.get("")

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fullpose_server.api.schemas.base import Ordinal, Wire
+from fullpose_server.people.admitted import Credential
 from fullpose_server.session.lease import GIVES_SECRET, LeaseAction, proof_of
 from fullpose_server.session.lease import LeaseToken as Token
 
@@ -22,9 +23,17 @@ class LeaseToken(Wire):
     sequence: Ordinal
     secret: Secret = Field(repr=False)
 
-    def shown(self) -> Token:
-        """What the session is shown of it."""
-        return Token(self.epoch, self.sequence, proof_of(self.secret))
+    def shown(self, person: Credential | None) -> Token:
+        """What the session is shown of it, where `person` shows it."""
+        return Token(self.epoch, self.sequence, proof_by(self.secret, person))
+
+
+def proof_by(secret: str, person: Credential | None) -> str:
+    """The proof of a lease's secret: the secret alone where nobody signs in, else it is its person's too.
+
+    One that got into other hands proves nothing there.
+    """
+    return proof_of(secret if person is None else f"{person.who}\n{secret}")
 
 
 class LeaseIn(Wire):
@@ -37,6 +46,9 @@ class LeaseIn(Wire):
     secret: Secret | None = Field(default=None, repr=False, description="The lease's; with renew, grant and release")
     to: str | None = Field(
         default=None, max_length=128, description="With grant: who of those who asked; null: the first"
+    )
+    reason: str | None = Field(
+        default=None, max_length=500, description="With takeover: why, for the audit. Needed where people sign in"
     )
 
     @model_validator(mode="after")

@@ -1,0 +1,144 @@
+"""People and credentials as rows."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from fullpose_server.errors import NotFoundError
+from fullpose_server.people.admitted import Shown
+from fullpose_server.people.roles import Role
+from fullpose_server.store import people as rows
+from fullpose_server.store.database import Database
+from fullpose_server.store.people import PeopleStore, PersonError
+from fullpose_server.store.people_known import has_people
+
+LATER = 4e9
+PASSWORD = "correct horse battery"
+
+
+@pytest.fixture
+def people(tmp_path: Path) -> Iterator[PeopleStore]:
+    database = Database(tmp_path / "fullpose.db")
+    yield PeopleStore(database)
+    database.close()
+
+
+def with_ann(people: PeopleStore, role: Role = Role.ADMIN) -> None:
+    people.add("ann", role, None)
+
+
+def test_nobody_is_asked_to_sign_in_until_there_is_somebody(people: PeopleStore, tmp_path: Path) -> None:
+    assert not people.admitted().people
+    assert not has_people(tmp_path)
+    with_ann(people)
+    assert people.admitted().people
+    assert has_people(tmp_path)
+
+
+def test_a_folder_that_is_none_or_damaged_has_nobody(tmp_path: Path) -> None:
+    assert not has_people(tmp_path / "nowhere")
+    (tmp_path / "fullpose.db").write_bytes(b"no database")
+    assert not has_people(tmp_path)
+
+
+def test_a_name_is_one_persons_however_it_is_spelled(people: PeopleStore) -> None:
+    with_ann(people)
+    with pytest.raises(PersonError, match="already"):
+        people.add("Ann", Role.VIEWER, None)
+    row = people.get("ANN")
+    assert row is not None
+    assert row.name == "ann"
+
+
+def test_neither_secrets_nor_passwords_are_in_the_file(people: PeopleStore, tmp_path: Path) -> None:
+    people.add("ann", Role.ADMIN, PASSWORD)
+    token = people.make_token("ann", "for a test", None, None)
+    session = people.open_session("ann", 1.0, "a browser", None)
+    stored = b"".join(file.read_bytes() for file in tmp_path.iterdir())
+    assert b"for a test" in stored
+    for secret in (PASSWORD, token.secret, session.secret):
+        assert secret.encode() not in stored
+    assert (tmp_path / "fullpose.db").stat().st_mode & 0o077 == 0
+
+
+def test_a_token_is_let_in_with_the_lesser_role_of_the_two(people: PeopleStore) -> None:
+    with_ann(people)
+    people.add("eve", Role.ADMIN, None)
+    less = people.make_token("ann", "less", Role.OPERATOR, None)
+    whole = people.make_token("ann", "whole", None, None)
+    roles = lambda: {each.id: each.role for each in people.admitted().all()}  # noqa: E731
+    assert roles() == {less.id: Role.OPERATOR, whole.id: Role.ADMIN}
+    people.change("ann", role=Role.VIEWER)
+    assert roles() == {less.id: Role.VIEWER, whole.id: Role.VIEWER}
+    with pytest.raises(PersonError, match="cannot be admin"):
+        people.make_token("ann", "more", Role.ADMIN, None)
+
+
+def test_who_is_disabled_is_let_in_by_nothing(people: PeopleStore) -> None:
+    with_ann(people)
+    people.add("bob", Role.OPERATOR, None)
+    given = people.make_token("bob", "a token", None, None)
+    people.change("bob", disabled=True)
+    assert people.admitted().find(Shown(given.secret, cookie=False), 0.0) is None
+    people.change("bob", disabled=False)
+    assert people.admitted().find(Shown(given.secret, cookie=False), 0.0) is not None
+
+
+def test_an_admin_is_left(people: PeopleStore) -> None:
+    with_ann(people)
+    for change in ({"role": Role.OPERATOR}, {"disabled": True}):
+        with pytest.raises(PersonError, match="last admin"):
+            people.change("ann", **change)  # type: ignore[arg-type]
+    people.add("eve", Role.ADMIN, None)
+    people.change("eve", disabled=True)
+    with pytest.raises(PersonError, match="last admin"):
+        people.change("ann", role=Role.VIEWER)
+    people.change("eve", disabled=False)
+    people.change("ann", role=Role.VIEWER)
+
+
+def test_another_password_ends_every_other_session(people: PeopleStore) -> None:
+    people.add("ann", Role.ADMIN, PASSWORD)
+    kept, ended = (people.open_session("ann", 1.0, "a browser", None) for _ in range(2))
+    token = people.make_token("ann", "a token", None, None)
+    people.set_password("ann", "another long sentence", keep=kept.id)
+    assert {each.id for each in people.admitted().all()} == {kept.id, token.id}
+    assert ended.id not in {each.id for each in people.admitted().all()}
+
+
+def test_the_oldest_of_too_many_sessions_ends(people: PeopleStore) -> None:
+    with_ann(people)
+    opened = [people.open_session("ann", 1.0, "a browser", None).id for _ in range(rows.MOST_SESSIONS + 3)]
+    assert {each.id for each in people.admitted().all()} == set(opened[3:])
+
+
+def test_every_change_is_seen_by_whoever_looks(people: PeopleStore) -> None:
+    seen = [people.revision()]
+    with_ann(people)
+    seen.append(people.revision())
+    given = people.make_token("ann", "a token", None, None)
+    seen.append(people.revision())
+    people.revoke(given.id)
+    seen.append(people.revision())
+    people.add("eve", Role.ADMIN, None)
+    people.change("ann", disabled=True)
+    seen.append(people.revision())
+    assert seen == sorted(set(seen))
+
+
+def test_what_is_revoked_is_gone_and_nobody_elses_is_revoked(people: PeopleStore) -> None:
+    with_ann(people)
+    given = people.make_token("ann", "a token", None, 1.0)
+    with pytest.raises(NotFoundError):
+        people.revoke(given.id, of="bob")
+    people.revoke(given.id, of="ann")
+    with pytest.raises(NotFoundError):
+        people.revoke(given.id)
+    assert people.tokens() == []
+
+
+def test_an_expired_session_is_let_in_by_nothing(people: PeopleStore) -> None:
+    with_ann(people)
+    given = people.open_session("ann", 1.0, "a browser", None)
+    assert people.admitted().find(Shown(given.secret, cookie=True), LATER) is None
