@@ -24,6 +24,7 @@ FIELD = {
     "horizon": "the prediction horizon of `preview`",
     "horizon_s": "the prediction horizon of `preview`",
     "way_age_ms": "of the surface, which keeps its names",
+    "hash_chain": "rows that each have the hash of the one before",
     "excess_cost": "of the surface, which keeps its names",
     "turns": "how many full turns a frame has made",
     "_turns": "which frames turn without end",

@@ -24,14 +24,16 @@ def new_secret() -> str:
     return secrets.token_urlsafe(SECRET_BYTES)
 
 
-def by_priority(services: Services, rig: str, command: Command, who: str) -> Coroutine[Any, Any, Reply]:
+def by_priority(
+    services: Services, rig: str, command: Command, who: str, address: str | None
+) -> Coroutine[Any, Any, Reply]:
     """Stop or E-stop, now: the flag is set in here. The coroutine, which is to be awaited, replies and audits."""
     host = services.hosts.get(rig)
     done = None if host is None else host.by_priority(command, who)
 
     async def replied() -> Reply:
         reply = NOTHING_RUNS if done is None else await done
-        audit(services, rig, who, command, {}, None, reply)
+        audit(services, rig, who, command, {}, None, reply, address)
         return reply
 
     return replied()
@@ -61,9 +63,13 @@ def audit(
     args: dict[str, Any],
     lease: tuple[int, int] | None,
     reply: Reply,
+    address: str | None,
 ) -> None:
-    """Have written down who commanded what, and what came of it; nobody waits for that. `lease`: epoch, sequence."""
-    services.trail.follow(audit_entry(rig, who, word, reply, args, lease))
+    """Have written down who commanded what, from where, and what came of it; nobody waits for that.
+
+    `lease`: epoch, sequence.
+    """
+    services.trail.follow(audit_entry(rig, who, word, reply, args, lease, address))
 
 
 def audit_of_people(
@@ -76,7 +82,9 @@ def audit_of_people(
     refused: str | None = None,
 ) -> None:
     """Have written down who signed in, or changed what about whom; it is no rig's."""
-    told = {"from": address} if about is None else {"from": address, "about": about}
+    told: dict[str, Any] = {} if about is None else {"about": about}
     states = ("", "")
-    entry = AuditEntry(time.time(), who[:_LONGEST_NAME], "", word, told, None, states, refused is None, refused)
+    entry = AuditEntry(
+        time.time(), who[:_LONGEST_NAME], "", word, told, None, states, refused is None, refused, address
+    )
     services.trail.follow(entry)

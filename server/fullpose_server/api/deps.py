@@ -123,6 +123,11 @@ def address_of(connection: HTTPConnection) -> str | None:
     return None if connection.client is None else connection.client.host
 
 
+async def _from_where(connection: HTTPConnection) -> str | None:
+    return address_of(connection)
+
+
 ServicesDep = Annotated[Services, Depends(_services)]
 WhoDep = Annotated[str, Depends(_who)]
+AddressDep = Annotated[str | None, Depends(_from_where)]  # of the client, for the audit
 WhoStopsDep = Annotated[str, Depends(_who_stops)]  # for no stop is refused for a name

@@ -73,8 +73,9 @@ def audit_entry(
     reply: Reply,
     args: dict[str, Any] | None = None,
     lease: tuple[int, int] | None = None,
+    address: str | None = None,
 ) -> AuditEntry:
-    """Who commanded what, and what came of it, as of now; `lease` is (epoch, sequence)."""
+    """Who commanded what, from which address, and what came of it, as of now; `lease` is (epoch, sequence)."""
     error = reply.error
     return AuditEntry(
         at=time.time(),
@@ -86,4 +87,5 @@ def audit_entry(
         states=(reply.state_before, reply.state_after),
         accepted=reply.ok,
         detail=reply.unknown if error is None else f"{error.code}: {error.message}",
+        address=address,
     )

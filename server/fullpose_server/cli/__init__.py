@@ -14,7 +14,10 @@ from fullpose.errors import SolverError
 from fullpose_server.cli._exit import BAD_INPUT, fail
 from fullpose_server.errors import ServerError
 
-ORDER = ("demo", "serve", "solve", "remedy", "compare", "rigs", "export", "user", "token", "doctor", "config")
+ORDER = (
+    *("demo", "serve", "solve", "remedy", "compare", "rigs", "export", "evidence", "audit"),
+    *("user", "token", "doctor", "config"),
+)
 
 
 def build() -> typer.Typer:

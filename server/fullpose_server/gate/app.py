@@ -71,7 +71,7 @@ class _Stop:
         try:
             person = self._who.admit(request.headers.get("authorization"), request.headers.get("cookie"))
             who = who_stops(request.headers.get(CLIENT_HEADER), address) if person is None else person.who
-            done = answer(word, await self._rigs.stop(request.path_params["rig"], Command(word), who))
+            done = answer(word, await self._rigs.stop(request.path_params["rig"], Command(word), who, address))
             response = Response(done.model_dump_json(), status_of(done), media_type="application/json")
         except ApiError as error:
             response = problem_response(error.problem, request)

@@ -73,14 +73,14 @@ class Rigs:
         if process is not None:
             process.close()
 
-    def stop(self, rig: str, command: Command, who: str) -> Coroutine[Any, Any, messages.Reply]:
+    def stop(self, rig: str, command: Command, who: str, address: str | None) -> Coroutine[Any, Any, messages.Reply]:
         """Stop or E-stop: the order stands when this returns; the coroutine, to be awaited, waits for the reply."""
         process = self._running.get(rig)
         done = None if process is None else PriorityChannel(process).ask(command, who)
 
         async def replied() -> messages.Reply:
             reply = NOTHING_RUNS if done is None else await done
-            self._audit(audit_entry(rig, who, command, reply))
+            self._audit(audit_entry(rig, who, command, reply, address=address))
             return reply
 
         return replied()

@@ -1,16 +1,24 @@
-"""The audit log: every command, accepted or refused, with who, lease, state before and after."""
+"""The audit log: every command, accepted or refused, with who, from where, lease, state before and after."""
 
-from collections.abc import Sequence
+import json
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from typing import Any
 
-from sqlalchemy import select
+from sqlalchemy import Integer, Select, String, select, type_coerce
+from sqlalchemy.orm import Session
 
 from fullpose_server.store.audit_entry import AuditEntry
 from fullpose_server.store.database import Database
+from fullpose_server.store.hash_chain import CONTENT, GENESIS, row_hash
 from fullpose_server.store.tables import AuditRow
+
+LINKED = (*CONTENT, "previous", "hash")
+_AT_ONCE = 1000  # rows that are read
 
 
 class AuditLog:
-    """Written once, never changed."""
+    """Written once, never changed: by one writer, each row after the newest (`hash_chain`)."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
@@ -18,22 +26,11 @@ class AuditLog:
     def write(self, entries: Sequence[AuditEntry]) -> None:
         """Add lines, all or none."""
         with self._database.begin() as session:
-            session.add_all(
-                AuditRow(
-                    at=entry.at,
-                    who=entry.who,
-                    rig=entry.rig,
-                    command=entry.command,
-                    args=entry.args,
-                    lease_epoch=None if entry.lease is None else entry.lease[0],
-                    lease_sequence=None if entry.lease is None else entry.lease[1],
-                    state_before=entry.states[0],
-                    state_after=entry.states[1],
-                    accepted=entry.accepted,
-                    detail=entry.detail,
-                )
-                for entry in entries
-            )
+            number, previous = _newest(session)
+            for entry in entries:
+                number += 1
+                content = {"id": number, **_content(entry)}
+                session.add(AuditRow(**content, previous=previous, hash=(previous := row_hash(content, previous))))
 
     def all(self, rig: str | None, before: int | None, limit: int) -> list[AuditRow]:
         """Newest first; `before` is the id to go on from."""
@@ -44,3 +41,60 @@ class AuditLog:
             query = query.where(AuditRow.id < before)
         with self._database.begin() as session:
             return list(session.scalars(query))
+
+
+def read_rows(
+    session: Session, *, rig: str | None = None, since: float | None = None, until: float | None = None
+) -> Iterator[dict[str, Any]]:
+    """The rows by their `LINKED` columns, the oldest first, from `since` to `until` [s since 1970], of a rig.
+
+    Of a rig means of none too: a plan is made for a rig, and not by its session. What a column cannot hold is given as
+    it is there, for `hash_chain` to find.
+    """
+    columns: list[Any] = [getattr(AuditRow, name) for name in LINKED if name not in ("args", "accepted")]
+    columns += [
+        type_coerce(AuditRow.args, String).label("args"),
+        type_coerce(AuditRow.accepted, Integer).label("accepted"),
+    ]
+    query: Select[Any] = select(*columns).order_by(AuditRow.id)
+    if since is not None:
+        query = query.where(AuditRow.at >= since)
+    if until is not None:
+        query = query.where(AuditRow.at <= until)
+    if rig is not None:
+        query = query.where(AuditRow.rig.in_((rig, "")))
+    for found in session.execute(query.execution_options(yield_per=_AT_ONCE)).mappings():
+        row: dict[str, Any] = {str(name): value for name, value in found.items()}
+        if isinstance(row["args"], str):
+            with suppress(ValueError):
+                row["args"] = json.loads(row["args"])
+        if row["accepted"] in (0, 1):
+            row["accepted"] = bool(row["accepted"])
+        yield row
+
+
+def newest_hash(session: Session) -> str:
+    """Of the audit, as it is now."""
+    return _newest(session)[1]
+
+
+def _newest(session: Session) -> tuple[int, str]:
+    found = session.execute(select(AuditRow.id, AuditRow.hash).order_by(AuditRow.id.desc()).limit(1)).first()
+    return (0, GENESIS) if found is None else (int(found[0]), str(found[1]))
+
+
+def _content(entry: AuditEntry) -> dict[str, Any]:
+    return {
+        "at": float(entry.at),
+        "who": entry.who,
+        "address": entry.address,
+        "rig": entry.rig,
+        "command": entry.command,
+        "args": entry.args,
+        "lease_epoch": None if entry.lease is None else entry.lease[0],
+        "lease_sequence": None if entry.lease is None else entry.lease[1],
+        "state_before": entry.states[0],
+        "state_after": entry.states[1],
+        "accepted": entry.accepted,
+        "detail": entry.detail,
+    }

@@ -6,7 +6,10 @@ from typing import Any
 
 @dataclass(frozen=True)
 class AuditEntry:
-    """One line: `lease` is (epoch, sequence), `states` before and after, `at` [s] since the epoch."""
+    """One line: `lease` is (epoch, sequence), `states` before and after, `at` [s] since the epoch.
+
+    `address` is where it came from, as the server or the gate sees it; None where that is not known.
+    """
 
     at: float
     who: str
@@ -17,3 +20,4 @@ class AuditEntry:
     states: tuple[str, str]
     accepted: bool
     detail: str | None
+    address: str | None = None

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from fullpose_server.errors import DamagedError, ServerError, StorageBusyError, StorageError, StorageFullError
 
-HEAD = "0005"  # the newest revision in migrations/versions
+HEAD = "0006"  # the newest revision in migrations/versions
 WAIT_S = 2.0  # for another program that holds it: the threads that wait here are not many
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 MIGRATIONS = Path(__file__).parent / "migrations"

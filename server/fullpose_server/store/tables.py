@@ -72,10 +72,10 @@ class PlanRow(Table):
 
 
 class AuditRow(Table):
-    """One command, accepted or refused."""
+    """One command, accepted or refused, or another change; each row after the one before (`store.hash_chain`)."""
 
     __tablename__ = "audit"
-    __table_args__ = (Index("ix_audit_rig", "rig", "id"),)
+    __table_args__ = (Index("ix_audit_rig", "rig", "id"), Index("ix_audit_previous", "previous", unique=True))
 
     id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
     at: Mapped[float] = mapped_column(Float)
@@ -89,6 +89,9 @@ class AuditRow(Table):
     state_after: Mapped[str] = mapped_column(String(16))
     accepted: Mapped[bool]
     detail: Mapped[str | None]
+    address: Mapped[str | None] = mapped_column(String(64))
+    previous: Mapped[str] = mapped_column(String(64))
+    hash: Mapped[str] = mapped_column(String(64))
 
 
 class AlarmRow(Table):

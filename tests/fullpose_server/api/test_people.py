@@ -352,7 +352,7 @@ def test_who_did_what_to_whom_is_written_down(lab: Laboratory) -> None:
     assert {"login", "user add", "user change", "token create", "token revoke", "password"} <= {
         line["command"] for line in about
     }
-    assert all(line["args"]["from"] == "127.0.0.1" for line in about)
+    assert all(line["address"] == "127.0.0.1" for line in about)
     assert not any(PASSWORD in json.dumps(line) or "fp_" in json.dumps(line) for line in lines)
     assert any(not line["accepted"] and line["command"] == "login" for line in about)
 

@@ -25,7 +25,7 @@ def list_audit(
     before: Annotated[Cursor | None, Query(description="Id to go on from, backward")] = None,
     limit: Annotated[int, Query(ge=1, le=1000)] = ROWS,
 ) -> Response:
-    """Every command, accepted or refused, newest first, a page at a time."""
+    """Every command and every change, accepted or refused, newest first, a page at a time."""
     services.trail.written()
     found = services.audit.all(rig, before, limit + 1)
     rows = found[:limit]

@@ -10,6 +10,7 @@ from starlette.responses import FileResponse
 
 from fullpose.compare import variants
 from fullpose.registry import Variant, parse_variant, variant
+from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
@@ -28,7 +29,7 @@ router = APIRouter(prefix="/compare", tags=["compare"])
 _LIST = TypeAdapter(list[ComparisonOut])
 
 
-@router.post("", status_code=202, responses=BUSY)
+@router.post("", status_code=202, responses=BUSY, dependencies=CHANGE)
 async def add_comparison(body: CompareIn, response: Response, services: ServicesDep, who: WhoDep) -> ComparisonOut:
     """Ask for a comparison at the rig's own rate; poll it until its status is done, failed or cancelled."""
     services.disk.check()
@@ -85,7 +86,7 @@ async def comparison_page(comparison: str, services: ServicesDep) -> FileRespons
     return FileResponse(job.folder / PAGE, media_type="text/html; charset=utf-8")
 
 
-@router.delete("/{comparison}", status_code=204)
+@router.delete("/{comparison}", status_code=204, dependencies=CHANGE)
 async def remove_comparison(comparison: str, services: ServicesDep) -> None:
     """Cancel a comparison that is being made (it stays, cancelled); remove one that is not."""
     await services.comparisons.remove(comparison)

@@ -13,7 +13,7 @@ from fastapi import APIRouter, WebSocket
 from pydantic import TypeAdapter
 
 from fullpose_server.api.commanding import audit, new_secret, with_rig_file
-from fullpose_server.api.deps import PersonDep, Services, ServicesDep, WhoDep
+from fullpose_server.api.deps import AddressDep, PersonDep, Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import problem_of
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Wire
@@ -46,7 +46,9 @@ _KINDS = {
 
 
 @router.websocket("/rigs/{rig}/live")
-async def live(rig: str, socket: WebSocket, services: ServicesDep, person: PersonDep, who: WhoDep) -> None:
+async def live(
+    rig: str, socket: WebSocket, services: ServicesDep, person: PersonDep, who: WhoDep, address: AddressDep
+) -> None:
     """open, then samples; each is answered once the rig's loop has taken it. One source a rig."""
     await asyncio.to_thread(services.rigs.get, rig)
     if rig in services.live_sources:
@@ -56,7 +58,7 @@ async def live(rig: str, socket: WebSocket, services: ServicesDep, person: Perso
         host = await services.hosts.ensure(rig)
         with LiveLink(host.live_socket()) as link:
             await socket.accept()
-            await _Source(services, socket, host, link, person, who).run()
+            await _Source(services, socket, host, link, person, who, address).run()
     except HostError as error:
         raise ApiError(503, "rig-process", str(error)) from None
     finally:
@@ -72,6 +74,7 @@ class _Source:
         link: LiveLink,
         person: Credential | None,
         who: str,
+        address: str | None,
     ) -> None:
         self._services = services
         self._person = person
@@ -79,6 +82,7 @@ class _Source:
         self._host = host
         self._link = link
         self._who = who
+        self._address = address
         self._convention: str | None = None
         self._sequence = 0
         self._binary = False
@@ -155,7 +159,8 @@ class _Source:
             args = await with_rig_file(self._services, self._host.name, {"live": settings})
             reply = await self._host.command("load", args, self._who, message.lease.shown(self._person), key)
             numbers = message.lease.epoch, message.lease.sequence
-            audit(self._services, self._host.name, self._who, "load", {"live": settings}, numbers, reply)
+            made = {"live": settings}
+            audit(self._services, self._host.name, self._who, "load", made, numbers, reply, self._address)
             answer("load", reply)  # raises the refusal
         self._convention = message.convention
         self._link.prove(key)

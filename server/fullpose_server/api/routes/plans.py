@@ -11,6 +11,7 @@ from pydantic import TypeAdapter
 
 from fullpose.registry import DEFAULT, REGISTRY, method_options, option_defaults
 from fullpose.rig import FRAMES
+from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
@@ -52,7 +53,7 @@ def list_methods() -> list[MethodOut]:
     ]
 
 
-@router.post("/plans", status_code=202, responses=BUSY)
+@router.post("/plans", status_code=202, responses=BUSY, dependencies=CHANGE)
 async def add_plan(body: PlanIn, response: Response, services: ServicesDep, who: WhoDep) -> PlanOut:
     """Ask for a plan; poll it until its status is done, failed or cancelled."""
     services.disk.check()
@@ -95,7 +96,7 @@ def get_plan(plan: str, services: ServicesDep) -> PlanOut:
     return _out(services, services.plans.get(plan))
 
 
-@router.post("/plans/{plan}/remedies", status_code=202, responses=BUSY)
+@router.post("/plans/{plan}/remedies", status_code=202, responses=BUSY, dependencies=CHANGE)
 async def add_remedy(plan: str, body: RemedyIn, response: Response, services: ServicesDep, who: WhoDep) -> PlanOut:
     """Search what would make this plan's flight fit its rig: a plan of its own, with progress and cancel as any other.
 
@@ -134,7 +135,12 @@ def plan_samples(
     return _samples(plan, services, points)
 
 
-@router.delete("/plans/{plan}", status_code=204, responses={409: {"description": "A session has loaded it"}})
+@router.delete(
+    "/plans/{plan}",
+    status_code=204,
+    responses={409: {"description": "A session has loaded it"}},
+    dependencies=CHANGE,
+)
 async def remove_plan(plan: str, services: ServicesDep) -> None:
     """Cancel a plan that is being made (it stays, cancelled); remove one that is not."""
     row = await asyncio.to_thread(services.plans.get, plan)

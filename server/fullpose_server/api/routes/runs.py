@@ -10,6 +10,7 @@ from pydantic import TypeAdapter
 from starlette.background import BackgroundTask
 from starlette.responses import FileResponse, Response
 
+from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
@@ -66,7 +67,7 @@ async def export_run(
     return FileResponse(draft, media_type=MEDIA_TYPES[kind], filename=f"{run}.{kind}", background=done)
 
 
-@router.delete("/{run}", status_code=204, responses=_IN_USE)
+@router.delete("/{run}", status_code=204, responses=_IN_USE, dependencies=CHANGE)
 async def remove_run(run: str, services: ServicesDep) -> None:
     """Remove a run that is neither pinned nor being written."""
     for host in services.hosts.all():
@@ -78,13 +79,13 @@ async def remove_run(run: str, services: ServicesDep) -> None:
         raise ApiError(409, "in-use", str(error)) from None
 
 
-@router.put("/{run}/pin", status_code=204)
+@router.put("/{run}/pin", status_code=204, dependencies=CHANGE)
 def pin_run(run: str, services: ServicesDep) -> None:
     """Keep a run: retention passes it over, and it cannot be deleted."""
     services.runs.pin(run, pinned=True)
 
 
-@router.delete("/{run}/pin", status_code=204)
+@router.delete("/{run}/pin", status_code=204, dependencies=CHANGE)
 def unpin_run(run: str, services: ServicesDep) -> None:
     """Keep it no longer than any other."""
     services.runs.pin(run, pinned=False)

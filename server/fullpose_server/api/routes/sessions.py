@@ -8,7 +8,7 @@ from fastapi import APIRouter, Body, Response
 
 from fullpose_server.api.admission import forbidden
 from fullpose_server.api.commanding import audit, by_priority, new_secret, with_rig_file, without_process
-from fullpose_server.api.deps import PersonDep, Services, ServicesDep, WhoDep, WhoStopsDep
+from fullpose_server.api.deps import AddressDep, PersonDep, Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.lease import LeaseGiven, LeaseIn, proof_by
 from fullpose_server.api.schemas.session import (
@@ -65,17 +65,18 @@ async def command(
     services: ServicesDep,
     person: PersonDep,
     who: WhoStopsDep,
+    address: AddressDep,
     response: Response,
 ) -> CommandDone:
     """Command the session. Needs the lease and an operator, but for stop and estop."""
     if body.command in NEEDS_NO_LEASE:
-        done = await _by_priority(services, rig, Command(body.command), who, response)
+        done = await _by_priority(services, rig, Command(body.command), who, address, response)
         return CommandDone(**done.model_dump())
     if person is not None and not person.role.may(Role.OPERATOR):
         raise forbidden(person, Role.OPERATOR)
     host = services.hosts.get(rig)
     if host is None:
-        raise await _refused_without_process(services, rig, body, who)
+        raise await _refused_without_process(services, rig, body, who, address)
     args: dict[str, Any] = body.args.model_dump(exclude_none=True)
     if isinstance(body.args, LoadArgs):
         args = await _load_args(services, rig, body.args)
@@ -87,57 +88,65 @@ async def command(
         reply = await host.command(body.command, args, who, shown, key)
     except RequestTooLargeError as error:
         raise ApiError(413, "too-large", str(error), command=body.command) from None
-    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), _numbers(body), reply)
+    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), _numbers(body), reply, address)
     return CommandDone(**answer(body.command, reply).model_dump(), live_key=key)
 
 
 @router.post("/stop", responses=STOPPED)
-async def stop(rig: str, services: ServicesDep, who: WhoStopsDep, response: Response) -> CommandOut:
+async def stop(
+    rig: str, services: ServicesDep, who: WhoStopsDep, address: AddressDep, response: Response
+) -> CommandOut:
     """Brake every frame inside its limits (IEC 60204-1 category 2). Needs no lease and waits for no other command."""
-    return await _by_priority(services, rig, Command.STOP, who, response)
+    return await _by_priority(services, rig, Command.STOP, who, address, response)
 
 
 @router.post("/estop", responses=STOPPED)
-async def estop(rig: str, services: ServicesDep, who: WhoStopsDep, response: Response) -> CommandOut:
+async def estop(
+    rig: str, services: ServicesDep, who: WhoStopsDep, address: AddressDep, response: Response
+) -> CommandOut:
     """Brake as fast as the limits allow, then disable the drive (IEC 60204-1 category 1). No lease; waits for nothing.
 
     It is no safety function: the hardware chain beside the rig is.
     """
-    return await _by_priority(services, rig, Command.ESTOP, who, response)
+    return await _by_priority(services, rig, Command.ESTOP, who, address, response)
 
 
 @router.post("/lease", responses=REFUSED)
 async def lease(
-    rig: str, services: ServicesDep, person: PersonDep, who: WhoDep, body: LeaseIn | None = None
+    rig: str, services: ServicesDep, person: PersonDep, who: WhoDep, address: AddressDep, body: LeaseIn | None = None
 ) -> LeaseGiven:
     """Take, request, grant, renew or release the lease. Who has its secret holds it, and where people sign in it is
     that person's alone."""
     body = body or LeaseIn()
     if body.action == LeaseAction.TAKEOVER and person is not None and not (body.reason or "").strip():
         raise ApiError(422, "reason", "reason: expected why the lease is taken over from its holder, for the audit")
-    return await _lease(services, await _host(services, rig), person, who, body)
+    return await _lease(services, await _host(services, rig), person, who, address, body)
 
 
-async def _by_priority(services: Services, rig: str, command: Command, who: str, response: Response) -> CommandOut:
+async def _by_priority(
+    services: Services, rig: str, command: Command, who: str, address: str | None, response: Response
+) -> CommandOut:
     if services.hosts.get(rig) is None:  # otherwise nothing is waited for before the flag is set
         await _known(services, rig)
-    done = answer(command, await by_priority(services, rig, command, who))
+    done = answer(command, await by_priority(services, rig, command, who, address))
     response.status_code = status_of(done)
     return done
 
 
-async def _lease(services: Services, host: RigHost, person: Credential | None, who: str, body: LeaseIn) -> LeaseGiven:
+async def _lease(
+    services: Services, host: RigHost, person: Credential | None, who: str, address: str | None, body: LeaseIn
+) -> LeaseGiven:
     before, action = host.snapshot().state, LeaseAction(body.action)
     given = new_secret() if action in GIVES_SECRET else None
     args = body.model_dump(include={"to", "reason"}, exclude_none=True)
     try:
         held = await host.lease(action, who, proof_by(given or body.secret or "", person), body.to)
     except RefusedError as refused:
-        audit(services, host.name, who, f"lease {action}", args, None, refused.reply)
+        audit(services, host.name, who, f"lease {action}", args, None, refused.reply, address)
         raise refusal(refused.reply) from None
     if action is not LeaseAction.RENEW:  # every few seconds; it says nothing that the next command does not
         reply = Reply(ok=True, state_before=before, state_after=host.snapshot().state, revision=host.revision)
-        audit(services, host.name, who, f"lease {action}", args, (held.epoch, held.sequence), reply)
+        audit(services, host.name, who, f"lease {action}", args, (held.epoch, held.sequence), reply, address)
     return LeaseGiven(**lease_out(held).model_dump(), secret=given)
 
 
@@ -146,14 +155,16 @@ def _numbers(body: CommandIn) -> tuple[int, int] | None:
     return None if body.lease is None else (body.lease.epoch, body.lease.sequence)
 
 
-async def _refused_without_process(services: Services, rig: str, body: CommandIn, who: str) -> ApiError:
+async def _refused_without_process(
+    services: Services, rig: str, body: CommandIn, who: str, address: str | None
+) -> ApiError:
     """Nobody holds the lease of a rig without a process: no command is started one for, taking the lease does that."""
     await _known(services, rig)
     reply = without_process(Command(body.command))
     if body.command == Command.CONNECT:
         lease_needed = ErrorBody("lease_needed", LEASE_NEEDED, reply.state_before, body.command, [body.command])
         reply = replace(reply, error=lease_needed)
-    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), _numbers(body), reply)
+    audit(services, rig, who, body.command, body.args.model_dump(exclude_none=True), _numbers(body), reply, address)
     return refusal(reply)
 
 

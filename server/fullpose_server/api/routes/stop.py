@@ -20,8 +20,8 @@ router = APIRouter(tags=["session"])
 async def stop_channel(socket: WebSocket, services: ServicesDep, person: PersonDep) -> None:
     """Stops and E-stops of every rig, and pings."""
 
-    def stop(rig: str, command: Command, who: str) -> Coroutine[Any, Any, Reply]:
-        return by_priority(services, rig, command, who)
+    def stop(rig: str, command: Command, who: str, address: str | None) -> Coroutine[Any, Any, Reply]:
+        return by_priority(services, rig, command, who, address)
 
     known = None if person is None else person.who  # a channel ends with its person's session
     await StopChannel(socket, stop, socket.headers.get(CLIENT_HEADER), lambda: known).run()

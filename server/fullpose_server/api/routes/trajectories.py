@@ -11,6 +11,7 @@ from uuid import uuid4
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import TypeAdapter
 
+from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.offload.work import ReadRequest, Work
 from fullpose_server.api.openapi import BUSY
@@ -53,6 +54,7 @@ UPLOAD_BODY = {
     "",
     status_code=201,
     openapi_extra=UPLOAD_BODY,
+    dependencies=CHANGE,
     responses={
         200: {"model": TrajectoryOut, "description": "The very same flight is stored already"},
         415: {"description": "Neither a form nor JSON"},
@@ -143,7 +145,12 @@ def preview_trajectory(
     )
 
 
-@router.delete("/{sha256}", status_code=204, responses={409: {"description": "A plan is made from it"}})
+@router.delete(
+    "/{sha256}",
+    status_code=204,
+    responses={409: {"description": "A plan is made from it"}},
+    dependencies=CHANGE,
+)
 def remove_trajectory(sha256: str, services: ServicesDep) -> None:
     """Remove a flight that no plan needs."""
     try:

@@ -43,20 +43,25 @@ class RunOut(Wire):
 
 
 class AuditOut(Wire):
-    """One command, accepted or refused."""
+    """One command, accepted or refused, or another change: of a flight, plan, comparison or record."""
 
     id: int
     at: datetime
     who: str
-    rig: str | None = Field(description="Null: it is no rig's, but about people")
-    command: str
+    address: str | None = Field(description="Where it came from, as the server sees it; null: not known")
+    rig: str | None = Field(
+        description="Null: it is no rig's, but about people, or a flight, plan, comparison or record"
+    )
+    command: str = Field(description="Of a session; or what was done else, as method and path")
     args: dict[str, Any]
     lease_epoch: int | None
     lease_sequence: int | None
-    state_before: State | None
+    state_before: State | None = Field(description="Null: of no session")
     state_after: State | None
     accepted: bool
     detail: str | None
+    previous: str = Field(description="The hash of the line before; of the first, zeros")
+    hash: str = Field(description="sha-256 of this line and of `previous`: `fullpose audit verify` proves them")
 
 
 class AlarmRecordOut(AlarmOut):

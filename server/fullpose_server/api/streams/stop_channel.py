@@ -19,7 +19,7 @@ from fullpose_server.session.states import Command
 # Who is at the other end, asked before each order; None: nobody known, and nobody need be. Raises `ApiError`.
 Known = Callable[[], str | None]
 # The order stands when it returns; the coroutine, which is to be awaited, waits for the reply and audits it.
-Stop = Callable[[str, Command, str], Coroutine[Any, Any, Reply]]
+Stop = Callable[[str, Command, str, str | None], Coroutine[Any, Any, Reply]]
 _INCOMING: TypeAdapter[StopIn] = TypeAdapter(StopIn)
 
 
@@ -67,7 +67,8 @@ class StopChannel:
 
     def _order(self, asked: StopRig, known: str | None) -> None:
         address = None if self._socket.client is None else self._socket.client.host
-        done = self._stop(asked.rig, Command(asked.type), known or who_stops(asked.client or self._given, address))
+        who = known or who_stops(asked.client or self._given, address)
+        done = self._stop(asked.rig, Command(asked.type), who, address)
 
         async def answered() -> None:
             await send_text(self._socket, (await self._answer(asked, done)).model_dump_json())
