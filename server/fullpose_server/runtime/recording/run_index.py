@@ -109,7 +109,7 @@ class RunFiles:
         path = self.path(run)
         if path.with_suffix(PIN).exists():
             raise RunInUseError(run, "it is pinned")
-        if _is_fresh(path) and not is_complete(path):
+        if is_being_written(path):
             raise RunInUseError(run, "it is being written")
         path.with_suffix(".json").unlink(missing_ok=True)
         path.unlink(missing_ok=True)
@@ -178,6 +178,11 @@ class RunFiles:
         return made
 
 
+def is_being_written(path: Path) -> bool:
+    """Whether it is, as far as its file shows."""
+    return _is_fresh(path) and not is_complete(path)
+
+
 def _is_fresh(path: Path) -> bool:
     return abs(time.time() - path.stat().st_mtime) < _WRITTEN_S
 
@@ -239,8 +244,12 @@ def _brief(path: Path) -> RunSummary:
 
 def summarise(path: Path) -> RunSummary:
     """What the whole record says, but for whether it is complete. Raises `RecordError`."""
+    return summary_of(path, *read_record(path))
+
+
+def summary_of(path: Path, rows: Samples, events: list[dict[str, Any]]) -> RunSummary:
+    """Of a record that has been read. Raises `RecordError`."""
     brief = _brief(path)
-    rows, events = read_record(path)
     flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & Flag.LEAD == 0)
     ends = [event for event in events if event.get("kind") == "run_end"]
     ending: dict[str, Any] = ends[-1] if ends else {}

@@ -1,0 +1,166 @@
+"""The page of a bundle: what the run was and came to, drawn, and with the hashes by which it is found again (PDF)."""
+
+import json
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import typst
+
+from fullpose_server.evidence.outcome import FramePeaks, Outcome
+from fullpose_server.evidence.plots import Mark, run_plots
+from fullpose_server.evidence.sources import Sources
+from fullpose_server.version import VERSION
+
+MOST_ALARMS = 6  # on the page; all are in alarms.json
+_LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+_LONGEST = 78  # characters of one thing that somebody else called so
+_PEAKS = ("frame", "min deg", "max deg", "rate deg/s", "accel. deg/s²", "measured min", "measured max")
+_FOOT = (
+    "The record, plan, flight, rig, alarms and audit are beside this page in the bundle. `fullpose evidence verify "
+    "FILE` compares each with the signed manifest. Evidence of what was recorded, not a proof of safety."
+)
+
+
+@dataclass(frozen=True)
+class Hashes:
+    """What the page names, by which the rest is found again."""
+
+    record: str
+    signer: str
+
+
+def report(found: Sources, outcome: Outcome, hashes: Hashes) -> bytes:
+    """The page. The same for the same run: no date is in it but the run's own."""
+    marks = _marks(found)
+    plots = run_plots(found.rows, found.rig, marks)
+    return _typeset(_facts(found, outcome, hashes, marks), plots)
+
+
+def _typeset(facts: Mapping[str, Any], plots: str) -> bytes:
+    template = files(__package__).joinpath("report.typ").read_bytes()
+    with tempfile.TemporaryDirectory(prefix="fullpose-report-") as made:
+        folder = Path(made)
+        (folder / "report.typ").write_bytes(template)
+        (folder / "facts.json").write_text(json.dumps(facts), "utf-8")
+        (folder / "plots.svg").write_text(plots, "utf-8")
+        page: bytes = typst.compile(
+            folder / "report.typ",
+            root=folder,
+            ignore_system_fonts=True,  # the same page on every machine
+            timestamp=datetime.fromtimestamp(0, UTC),
+        )
+    return page
+
+
+def _facts(found: Sources, outcome: Outcome, hashes: Hashes, marks: Sequence[Mark]) -> dict[str, Any]:
+    run = found.run
+    tones = {True: "kept", False: "exceeded", None: "unknown"}
+    good = run.end == "completed" and not run.lost_samples and run.complete
+    tone = tones[outcome.limits_kept] if good or outcome.limits_kept is False else "unknown"
+    return {
+        "title": f"Evidence of run {run.id}",
+        "made_by": f"Fullpose {VERSION}",
+        "run": run.id,
+        "sentence": outcome.sentence,
+        "tone": tone,
+        "facts": _told(found),
+        "peaks_head": list(_PEAKS),
+        "peaks": [[name, *_peak(peaks)] for name, peaks in outcome.peaks.items()],
+        "plots": "Angles, rates, accelerations and errors over the record's time",
+        "alarms_head": _alarms_head(found),
+        "alarms": [_alarm(mark, alarm) for mark, alarm in zip(marks, found.alarms[:MOST_ALARMS], strict=True)],
+        "hashes": _hashes(found, hashes),
+        "foot": _FOOT,
+    }
+
+
+def _told(found: Sources) -> list[list[str]]:
+    run, plan = found.run, found.plan
+    flight = found.flight or {}
+    rig = f"{run.rig}, {found.rig.geometry}" if found.rig is not None else run.rig
+    duration = "not known" if run.started is None or run.ended is None else f"{run.ended - run.started:.3f} s"
+    samples = "none" if run.samples is None else f"{run.samples}, {run.lost_samples or 0} missing"
+    whole = "" if run.complete else "; the record was cut off or is damaged"
+    return [
+        ["rig", _clip(rig)],
+        ["begun by", _clip(run.who or "not known")],
+        ["from", _time(run.started)],
+        ["until", _time(run.ended)],
+        ["recorded", duration],
+        ["samples", samples + whole],
+        ["flight", _clip(str(flight.get("name") or found.missing.get("flight", "not known")))],
+        ["plan", _clip(plan.plan_id if plan is not None else found.missing.get("plan", "not known"))],
+        ["method", _clip(plan.method if plan is not None else "not known")],
+        ["flight's length", f"{plan.duration_s:.3f} s at {plan.rate_hz:g} Hz" if plan is not None else "not known"],
+        ["largest tick lateness", "not known" if run.max_lateness_us is None else f"{run.max_lateness_us:.0f} us"],
+        ["audit", f"{len(found.audit)} lines of this run"],
+    ]
+
+
+def _hashes(found: Sources, hashes: Hashes) -> list[list[str]]:
+    plan = found.plan
+    return [
+        ["record, sha-256", hashes.record],
+        ["plan", found.run.plan_hash or "none"],
+        ["flight, sha-256", plan.trajectory_sha256 if plan is not None else "not known"],
+        ["rig", str(found.bound.get("rig_hash") or "not known")],
+        ["newest line of the audit", found.newest_hash],
+        ["signed with the key", hashes.signer],
+    ]
+
+
+def _marks(found: Sources) -> list[Mark]:
+    started = found.run.started or 0.0
+    return [
+        Mark(float(alarm["time_s"]) - started, letter)
+        for alarm, letter in zip(found.alarms[:MOST_ALARMS], _LETTERS, strict=False)
+    ]
+
+
+def _alarms_head(found: Sources) -> str:
+    if "alarms" in found.missing:
+        return f"Alarms: {found.missing['alarms']}."
+    count = len(found.alarms)
+    if not count:
+        return "No alarm."
+    more = f", the first {MOST_ALARMS} here" if count > MOST_ALARMS else ""
+    return f"{count} alarm{'' if count == 1 else 's'}{more}; times from the record's beginning:"
+
+
+def _alarm(mark: Mark, alarm: Mapping[str, Any]) -> list[str]:
+    many = "" if alarm["count"] == 1 else f" ({alarm['count']} times)"
+    return [
+        mark.letter,
+        f"{mark.time_s:.3f} s",
+        f"{alarm['severity']} {alarm['code']}{many}",
+        _clip(alarm["message"], 110),
+    ]
+
+
+def _peak(peaks: FramePeaks) -> list[str]:
+    values = (
+        peaks.min_deg,
+        peaks.max_deg,
+        peaks.rate_deg_s,
+        peaks.acceleration_deg_s2,
+        peaks.measured_min_deg,
+        peaks.measured_max_deg,
+    )
+    return ["" if value is None else f"{value:.3f}" for value in values]
+
+
+def _clip(text: str, most: int = _LONGEST) -> str:
+    """On one page there is so much room."""
+    plain = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split())
+    return plain if len(plain) <= most else plain[: most - 1] + "…"
+
+
+def _time(seconds: float | None) -> str:
+    if seconds is None:
+        return "not known"
+    return datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S.%f")[:-3] + " UTC"
