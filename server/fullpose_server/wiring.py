@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from fullpose_server.api.deps import Services
+from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
 from fullpose_server.errors import DamagedError, ServerError
@@ -145,6 +146,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         runs=runs,
         scenes=on_demand,
         offload=Offload(settings),
+        evidence=EvidenceMaker(folder),
         disk=Disk(folder, settings.disk_alarm_bytes, settings.disk_reserve_bytes),
         quarantine=quarantine,
         upkeep=Upkeep(

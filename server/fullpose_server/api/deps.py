@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from starlette.requests import HTTPConnection
 
 from fullpose_server.api.front import FrontStatus
+from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
 from fullpose_server.api.problems import ApiError
@@ -71,6 +72,7 @@ class Services:
     runs: RunFiles
     scenes: Scenes
     offload: Offload
+    evidence: EvidenceMaker
     disk: Disk
     quarantine: Quarantine
     upkeep: Upkeep

@@ -60,13 +60,13 @@ def lines(
     config: Config = None,
     rig: Annotated[str | None, typer.Option(help="Those of this rig, and those of none.")] = None,
 ) -> None:
-    """Print every line, with its hash."""
+    """Print every line, with its hash, and with all that the hash is of."""
     from fullpose_server.store.audit import read_rows
     from fullpose_server.store.reading import reading
 
     with reading(_database(data_dir, config)) as session:
         for row in read_rows(session, rig=rig):
-            typer.echo(json.dumps({**row, "at": _time(row["at"])}))
+            typer.echo(json.dumps({**row, "time": _time(row["at"])}))
 
 
 def _database(data_dir: Path | None, config: Path | None) -> Path:

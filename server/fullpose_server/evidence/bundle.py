@@ -17,11 +17,13 @@ from fullpose_server.evidence.report import Hashes, report
 from fullpose_server.evidence.signing import public_key, signature, signing_key
 from fullpose_server.evidence.sources import PLAN_FILES, Sources, sources_of
 from fullpose_server.formats.output_file import replacing
+from fullpose_server.formats.rig_codec import rig_values
 from fullpose_server.version import VERSION
 
 FORMAT = 1
 MANIFEST, SIGNATURE = "manifest.json", "signature.json"
-RECORD, RIG, ALARMS, AUDIT, REPORT = "record.mcap", "rig.toml", "alarms.json", "audit.jsonl", "report.pdf"
+RECORD, ALARMS, AUDIT, REPORT = "record.mcap", "alarms.json", "audit.jsonl", "report.pdf"
+RIG, RIG_VALUES = "rig.toml", "rig.json"  # as people write it, and as it is hashed
 _LIBRARIES = ("numpy", "scipy", "numba", "piqp", "mcap", "msgspec", "pyarrow", "sqlalchemy", "cryptography", "typst")
 
 
@@ -54,8 +56,9 @@ def _add_sources(archive: ArchiveWriter, found: Sources) -> None:
         source = f"source.{found.flight['source_format']}"
         for name in ("time.npy", "q.npy", source):
             archive.add_file(f"flight/{name}", found.flight_folder / name)
-    if found.rig_text is not None:
+    if found.rig is not None and found.rig_text is not None:
         archive.add(RIG, found.rig_text.encode())
+        archive.add(RIG_VALUES, _json(rig_values(found.rig)))
     archive.add(ALARMS, _json(found.alarms))
     archive.add(AUDIT, "".join(json.dumps(row, sort_keys=True) + "\n" for row in found.audit).encode())
 

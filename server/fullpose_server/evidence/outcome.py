@@ -140,7 +140,7 @@ def _sentence(run: RunSummary, kept: bool | None, exceeded: tuple[Exceeded, ...]
         begun = f"No flight: what was kept around a fault ({run.incident})"
     else:
         begun = _ENDED[RunEnd(run.end)] if run.end in set(RunEnd) else "How it ended is not known"
-        begun += f" ({run.end_code})" if run.end_code else ""
+        begun += f" ({run.end_code})" if run.end_code and run.end_code != run.end else ""
     told = [begun]
     if run.max_solve_error_deg is not None:
         told.append(f"largest solve error {_degrees(run.max_solve_error_deg)}")

@@ -1,6 +1,7 @@
 """The page of a bundle: what the run was and came to, drawn, and with the hashes by which it is found again (PDF)."""
 
 import json
+import math
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Any
 
 import typst
 
+from fullpose.rig import FRAMES, Frame, FrameLimits
 from fullpose_server.evidence.outcome import FramePeaks, Outcome
 from fullpose_server.evidence.plots import Mark, run_plots
 from fullpose_server.evidence.sources import Sources
@@ -19,7 +21,15 @@ from fullpose_server.version import VERSION
 MOST_ALARMS = 6  # on the page; all are in alarms.json
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _LONGEST = 78  # characters of one thing that somebody else called so
-_PEAKS = ("frame", "min deg", "max deg", "rate deg/s", "accel. deg/s²", "measured min", "measured max")
+_PEAKS = (
+    "frame",
+    "min deg (limit)",
+    "max deg (limit)",
+    "rate deg/s (limit)",
+    "acceleration deg/s² (limit)",
+    "measured min",
+    "measured max",
+)
 _FOOT = (
     "The record, plan, flight, rig, alarms and audit are beside this page in the bundle. `fullpose evidence verify "
     "FILE` compares each with the signed manifest. Evidence of what was recorded, not a proof of safety."
@@ -36,9 +46,9 @@ class Hashes:
 
 def report(found: Sources, outcome: Outcome, hashes: Hashes) -> bytes:
     """The page. The same for the same run: no date is in it but the run's own."""
-    marks = _marks(found)
-    plots = run_plots(found.rows, found.rig, marks)
-    return _typeset(_facts(found, outcome, hashes, marks), plots)
+    alarm_times = _alarm_times(found)
+    plots = run_plots(found.rows, found.rig, alarm_times)
+    return _typeset(_facts(found, outcome, hashes, alarm_times), plots)
 
 
 def _typeset(facts: Mapping[str, Any], plots: str) -> bytes:
@@ -57,7 +67,7 @@ def _typeset(facts: Mapping[str, Any], plots: str) -> bytes:
     return page
 
 
-def _facts(found: Sources, outcome: Outcome, hashes: Hashes, marks: Sequence[Mark]) -> dict[str, Any]:
+def _facts(found: Sources, outcome: Outcome, hashes: Hashes, alarm_times: Sequence[Mark]) -> dict[str, Any]:
     run = found.run
     tones = {True: "kept", False: "exceeded", None: "unknown"}
     good = run.end == "completed" and not run.lost_samples and run.complete
@@ -70,10 +80,10 @@ def _facts(found: Sources, outcome: Outcome, hashes: Hashes, marks: Sequence[Mar
         "tone": tone,
         "facts": _told(found),
         "peaks_head": list(_PEAKS),
-        "peaks": [[name, *_peak(peaks)] for name, peaks in outcome.peaks.items()],
+        "peaks": [[name, *_peak(peaks, _limits(found, name))] for name, peaks in outcome.peaks.items()],
         "plots": "Angles, rates, accelerations and errors over the record's time",
         "alarms_head": _alarms_head(found),
-        "alarms": [_alarm(mark, alarm) for mark, alarm in zip(marks, found.alarms[:MOST_ALARMS], strict=True)],
+        "alarms": [_alarm(mark, alarm) for mark, alarm in zip(alarm_times, found.alarms[:MOST_ALARMS], strict=True)],
         "hashes": _hashes(found, hashes),
         "foot": _FOOT,
     }
@@ -85,19 +95,19 @@ def _told(found: Sources) -> list[list[str]]:
     rig = f"{run.rig}, {found.rig.geometry}" if found.rig is not None else run.rig
     duration = "not known" if run.started is None or run.ended is None else f"{run.ended - run.started:.3f} s"
     samples = "none" if run.samples is None else f"{run.samples}, {run.lost_samples or 0} missing"
-    whole = "" if run.complete else "; the record was cut off or is damaged"
+    cut = "" if run.complete else "; the record was cut off or is damaged"
     return [
         ["rig", _clip(rig)],
         ["begun by", _clip(run.who or "not known")],
         ["from", _time(run.started)],
         ["until", _time(run.ended)],
         ["recorded", duration],
-        ["samples", samples + whole],
+        ["samples", samples + cut],
         ["flight", _clip(str(flight.get("name") or found.missing.get("flight", "not known")))],
         ["plan", _clip(plan.plan_id if plan is not None else found.missing.get("plan", "not known"))],
         ["method", _clip(plan.method if plan is not None else "not known")],
         ["flight's length", f"{plan.duration_s:.3f} s at {plan.rate_hz:g} Hz" if plan is not None else "not known"],
-        ["largest tick lateness", "not known" if run.max_lateness_us is None else f"{run.max_lateness_us:.0f} us"],
+        ["lateness of a tick", "not known" if run.max_lateness_us is None else f"at most {run.max_lateness_us:.0f} us"],
         ["audit", f"{len(found.audit)} lines of this run"],
     ]
 
@@ -114,7 +124,7 @@ def _hashes(found: Sources, hashes: Hashes) -> list[list[str]]:
     ]
 
 
-def _marks(found: Sources) -> list[Mark]:
+def _alarm_times(found: Sources) -> list[Mark]:
     started = found.run.started or 0.0
     return [
         Mark(float(alarm["time_s"]) - started, letter)
@@ -142,16 +152,26 @@ def _alarm(mark: Mark, alarm: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _peak(peaks: FramePeaks) -> list[str]:
+def _peak(peaks: FramePeaks, limits: FrameLimits | None) -> list[str]:
     values = (
-        peaks.min_deg,
-        peaks.max_deg,
-        peaks.rate_deg_s,
-        peaks.acceleration_deg_s2,
-        peaks.measured_min_deg,
-        peaks.measured_max_deg,
+        (peaks.min_deg, None if limits is None else limits.min),
+        (peaks.max_deg, None if limits is None else limits.max),
+        (peaks.rate_deg_s, None if limits is None else limits.max_rate),
+        (peaks.acceleration_deg_s2, None if limits is None else limits.max_acceleration),
+        (peaks.measured_min_deg, None),
+        (peaks.measured_max_deg, None),
     )
-    return ["" if value is None else f"{value:.3f}" for value in values]
+    return [_beside(value, limit) for value, limit in values]
+
+
+def _beside(value: float | None, limit: float | None) -> str:
+    """A value, and its limit [rad] where there is one."""
+    told = "" if value is None else f"{value:.3f}"
+    return told if limit is None or not math.isfinite(limit) else f"{told} ({math.degrees(limit):g})"
+
+
+def _limits(found: Sources, frame: str) -> FrameLimits | None:
+    return None if found.rig is None else found.rig.frames[FRAMES.index(Frame(frame))]
 
 
 def _clip(text: str, most: int = _LONGEST) -> str:

@@ -27,8 +27,10 @@ from fullpose_server.store.audit import newest_hash, read_rows
 from fullpose_server.store.reading import NAME, reading
 from fullpose_server.store.tables import AlarmRow, AuditRow, PlanRow, TrajectoryRow
 
-AFTER_S = 5.0  # what follows a run's end belongs to it: the answer to a stop, an acknowledgement
+AFTER_S = 5.0  # what is done so soon after a run's end belongs to it, but for what begins another
+ALARM_AFTER_S = 0.5  # likewise an alarm
 BEFORE_S = 60.0  # and what comes before, where no load tells when it began
+_BEGINS = frozenset({Command.LOAD.value, Command.ARM.value, Command.START.value, Command.GO_LIVE.value})
 PLAN_FILES = ("plan.json", "angles.npy", "target.npy", "error.npy")
 
 
@@ -159,15 +161,19 @@ def _take_history(found: Sources, session: Session) -> None:
         return
     query = select(AlarmRow).where(
         AlarmRow.rig == run.rig,
-        AlarmRow.time_s <= run.ended + AFTER_S,
+        AlarmRow.time_s <= run.ended + ALARM_AFTER_S,
         func.coalesce(AlarmRow.last_time_s, AlarmRow.time_s) >= run.started,
     )
     for alarm in session.scalars(query.order_by(AlarmRow.time_s, AlarmRow.id)):
         found.alarms.append({column.name: getattr(alarm, column.name) for column in AlarmRow.__table__.columns})
-    found.audit = list(_audit(session, run.rig, run.started, run.ended + AFTER_S))
+    found.audit = list(_audit(session, run.rig, run.started, run.ended))
 
 
-def _audit(session: Session, rig: str, started: float, until: float) -> Iterator[dict[str, Any]]:
+def _audit(session: Session, rig: str, started: float, ended: float) -> Iterator[dict[str, Any]]:
     loads = AuditRow.rig == rig, AuditRow.command == Command.LOAD.value, AuditRow.accepted, AuditRow.at <= started
     loaded = session.scalar(select(func.max(AuditRow.at)).where(*loads))
-    return read_rows(session, rig=rig, since=started - BEFORE_S if loaded is None else loaded, until=until)
+    since = started - BEFORE_S if loaded is None else loaded
+    for row in read_rows(session, rig=rig, since=since, until=ended + AFTER_S):
+        if row["at"] > ended and row["rig"] == rig and row["command"] in _BEGINS:
+            return
+        yield row

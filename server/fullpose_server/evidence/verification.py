@@ -8,14 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from fullpose.errors import SolverError
 from fullpose_server.errors import DamagedError, FileError
 from fullpose_server.evidence.archive import ArchiveReader, Member
-from fullpose_server.evidence.bundle import AUDIT, FORMAT, MANIFEST, RIG, SIGNATURE
+from fullpose_server.evidence.bundle import AUDIT, FORMAT, MANIFEST, RIG, RIG_VALUES, SIGNATURE
 from fullpose_server.evidence.errors import BundleError
 from fullpose_server.evidence.signing import SignatureError, check_signature
 from fullpose_server.evidence.sources import PLAN_FILES
 from fullpose_server.formats.flight_folder import read_arrays
 from fullpose_server.formats.plan_folder import PlanFolderError, read_sealed_plan, rig_hash
+from fullpose_server.formats.rig_codec import rig_from_values
 from fullpose_server.formats.rig_file import read_rig
 from fullpose_server.formats.trajectory import Convention, Trajectory
 from fullpose_server.store.hash_chain import is_as_written
@@ -68,7 +70,7 @@ def _manifest(path: Path, document: bytes) -> dict[str, Any]:
         for name, keys in (("run", {"id", "rig", "plan_hash"}), ("outcome", {"sentence"}), ("rig", {"hash"})):
             if keys - set(manifest[name]):
                 raise KeyError(name)
-        dict(manifest["missing"])
+        manifest["missing"].items()
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         raise BundleError(path, f"{MANIFEST} is none ({error!r})") from None
     found: dict[str, Any] = manifest
@@ -82,7 +84,7 @@ def _check_files(path: Path, archive: ArchiveReader, files: dict[str, Member], w
         if names:
             raise BundleError(path, f"{told}: {', '.join(sorted(names))}")
     for name, member in files.items():
-        copied = name in (RIG, AUDIT) or name.startswith(("plan/", "flight/"))
+        copied = name in (RIG, RIG_VALUES, AUDIT) or name.startswith(("plan/", "flight/"))
         copy = work / name if copied else None
         if copy is not None:
             copy.parent.mkdir(exist_ok=True)
@@ -97,10 +99,10 @@ def _check_parts(path: Path, manifest: dict[str, Any], work: Path) -> tuple[str,
             fits.append(_plan(path, manifest, work))
         if (work / "flight").is_dir():
             fits.append(_flight(path, manifest, work))
-        if (work / RIG).is_file():
+        if (work / RIG).is_file() or (work / RIG_VALUES).is_file():
             fits.append(_rig(path, manifest, work))
         fits.append(_audit(path, work))
-    except (KeyError, TypeError, ValueError, OSError, RecursionError) as error:
+    except (KeyError, TypeError, ValueError, OSError, RecursionError, SolverError) as error:
         raise BundleError(path, f"{MANIFEST} and its files do not fit each other ({error!r})") from None
     return tuple(fits)
 
@@ -139,8 +141,14 @@ def _rig(path: Path, manifest: dict[str, Any], work: Path) -> str:
         entry = read_rig(work / RIG)
     except FileError as error:
         raise BundleError(path, f"{RIG}: {error}") from None
-    if rig_hash(entry.rig) != manifest["rig"]["hash"]:
-        raise BundleError(path, f"{RIG} is not the rig that was flown: its hash is another")
+    rig = rig_from_values(json.loads((work / RIG_VALUES).read_text("utf-8")))
+    if rig_hash(rig) != manifest["rig"]["hash"]:
+        raise BundleError(path, f"{RIG_VALUES} is not the rig that was flown: its hash is another")
+    # A frame that the geometry has not is in the hash, and in no file.
+    frames = rig.geometry.frames
+    same = [entry.rig.frames[index] for index in frames] == [rig.frames[index] for index in frames]
+    if (entry.rig.name, entry.rig.geometry) != (rig.name, rig.geometry) or not same:
+        raise BundleError(path, f"{RIG} is not the rig that was flown")
     return "the rig's hash"
 
 

@@ -89,6 +89,7 @@ def test_a_stop_needs_neither_the_server_nor_the_end_of_its_body(served: Served)
     finally:
         os.kill(served.process.pid, signal.SIGCONT)
     log = served.http.get("/api/v1/audit").json()
+    assert {line["address"] for line in log[:4]} == {"127.0.0.1"}
     told = [(line["command"], line["who"], line["accepted"]) for line in reversed(log)][2:]
     here = "anonymous@127.0.0.1"
     assert told == [("estop", "joe_b", True), ("stop", here, False), ("estop", here, True), ("estop", here, True)]

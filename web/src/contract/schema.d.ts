@@ -50,7 +50,7 @@ export interface paths {
         };
         /**
          * List Audit
-         * @description Every command, accepted or refused, newest first, a page at a time.
+         * @description Every command and every change, accepted or refused, newest first, a page at a time.
          */
         get: operations["list_audit_api_v1_audit_get"];
         put?: never;
@@ -587,6 +587,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run}/evidence": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Run Evidence
+         * @description Everything that the run was as one signed file, which `fullpose evidence verify` proves without this server.
+         */
+        get: operations["run_evidence_api_v1_runs__run__evidence_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/runs/{run}/export": {
         parameters: {
             query?: never;
@@ -1001,11 +1021,16 @@ export interface components {
         };
         /**
          * AuditOut
-         * @description One command, accepted or refused.
+         * @description One command, accepted or refused, or another change: of a flight, plan, comparison or record.
          */
         AuditOut: {
             /** Accepted */
             accepted: boolean;
+            /**
+             * Address
+             * @description Where it came from, as the server sees it; null: not known
+             */
+            address: string | null;
             /** Args */
             args: {
                 [key: string]: unknown;
@@ -1015,10 +1040,18 @@ export interface components {
              * Format: date-time
              */
             at: string;
-            /** Command */
+            /**
+             * Command
+             * @description Of a session; or what was done else, as method and path
+             */
             command: string;
             /** Detail */
             detail: string | null;
+            /**
+             * Hash
+             * @description sha-256 of this line and of `previous`: `fullpose audit verify` proves them
+             */
+            hash: string;
             /** Id */
             id: number;
             /** Lease Epoch */
@@ -1026,11 +1059,17 @@ export interface components {
             /** Lease Sequence */
             lease_sequence: number | null;
             /**
+             * Previous
+             * @description The hash of the line before; of the first, zeros
+             */
+            previous: string;
+            /**
              * Rig
-             * @description Null: it is no rig's, but about people
+             * @description Null: it is no rig's, but about people, or a flight, plan, comparison or record
              */
             rig: string | null;
             state_after: components["schemas"]["State"] | null;
+            /** @description Null: of no session */
             state_before: components["schemas"]["State"] | null;
             /** Who */
             who: string;
@@ -4238,7 +4277,10 @@ export interface operations {
     remove_comparison_api_v1_compare__comparison__delete: {
         parameters: {
             query?: never;
-            header?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
             path: {
                 comparison: string;
             };
@@ -5222,7 +5264,10 @@ export interface operations {
     remove_plan_api_v1_plans__plan__delete: {
         parameters: {
             query?: never;
-            header?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
             path: {
                 plan: string;
             };
@@ -6564,7 +6609,10 @@ export interface operations {
     remove_run_api_v1_runs__run__delete: {
         parameters: {
             query?: never;
-            header?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
             path: {
                 run: string;
             };
@@ -6635,6 +6683,100 @@ export interface operations {
             };
             /** @description No room on the disk */
             507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    run_evidence_api_v1_runs__run__evidence_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/zip": unknown;
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is being written */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many at once: try again later */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -6736,7 +6878,10 @@ export interface operations {
     pin_run_api_v1_runs__run__pin_put: {
         parameters: {
             query?: never;
-            header?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
             path: {
                 run: string;
             };
@@ -6819,7 +6964,10 @@ export interface operations {
     unpin_run_api_v1_runs__run__pin_delete: {
         parameters: {
             query?: never;
-            header?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
             path: {
                 run: string;
             };
@@ -7377,7 +7525,10 @@ export interface operations {
     add_trajectory_api_v1_trajectories_post: {
         parameters: {
             query?: never;
-            header?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
             path?: never;
             cookie?: never;
         };
@@ -7608,7 +7759,10 @@ export interface operations {
     remove_trajectory_api_v1_trajectories__sha256__delete: {
         parameters: {
             query?: never;
-            header?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
             path: {
                 sha256: string;
             };

@@ -69,6 +69,7 @@ export const api = {
   deleteRun: (run: string) => request("delete", "/api/v1/runs/{run}", { run }, READ),
   pinRun: (run: string) => request("put", "/api/v1/runs/{run}/pin", { run }, READ),
   unpinRun: (run: string) => request("delete", "/api/v1/runs/{run}/pin", { run }, READ),
+  evidenceUrl: (run: string) => pathTo("/api/v1/runs/{run}/evidence", { run }),
   exportUrl: (run: string, format: ExportFormat) => pathTo("/api/v1/runs/{run}/export", { run }, { format }),
 
   alarms: (wanted: AlarmQuery, before: string | null = null) =>

@@ -12,6 +12,7 @@ from starlette.responses import FileResponse, Response
 
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
+from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.records import RunOut
@@ -67,12 +68,44 @@ async def export_run(
     return FileResponse(draft, media_type=MEDIA_TYPES[kind], filename=f"{run}.{kind}", background=done)
 
 
-@router.delete("/{run}", status_code=204, responses=_IN_USE, dependencies=CHANGE)
-async def remove_run(run: str, services: ServicesDep) -> None:
-    """Remove a run that is neither pinned nor being written."""
+@router.get(
+    "/{run}/evidence",
+    response_class=FileResponse,
+    responses={200: {"content": {"application/zip": {}}}, 409: {"description": "It is being written"}, **BUSY},
+)
+async def run_evidence(run: str, services: ServicesDep) -> FileResponse:
+    """Everything that the run was as one signed file, which `fullpose evidence verify` proves without this server."""
+    services.runs.path(run)
+    _check_flown(services, run)
+    services.disk.check()
+    await asyncio.to_thread(_all_written, services)
+    draft = services.uploads / uuid4().hex
+    try:
+        await services.evidence.make(run, draft)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+    done = BackgroundTask(draft.unlink, missing_ok=True)
+    return FileResponse(draft, media_type="application/zip", filename=f"{run}.zip", background=done)
+
+
+def _check_flown(services: Services, run: str) -> None:
+    """Raise `ApiError` while it is being flown."""
     for host in services.hosts.all():
         if host.snapshot().run_id == run:
             raise ApiError(409, "in-use", f"run {run} is being flown on rig {host.name}")
+
+
+def _all_written(services: Services) -> None:
+    """Audit and alarms as of now are in the database."""
+    services.trail.written()
+    services.alarm_trail.written()
+
+
+@router.delete("/{run}", status_code=204, responses=_IN_USE, dependencies=CHANGE)
+async def remove_run(run: str, services: ServicesDep) -> None:
+    """Remove a run that is neither pinned nor being written."""
+    _check_flown(services, run)
     try:
         await asyncio.to_thread(services.runs.remove, run)
     except RunInUseError as error:

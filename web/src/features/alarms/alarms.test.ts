@@ -128,12 +128,22 @@ it("what was damaged and put into quarantine is told", async () => {
 });
 
 it("commands are listed with what was refused, a page at a time", async () => {
-  const line = { id: 5, at: "2026-11-29T10:00:00Z", who: "ann", rig: "bench", command: "go_live", args: {} };
+  const line = {
+    id: 5,
+    at: "2026-11-29T10:00:00Z",
+    who: "ann",
+    rig: "bench",
+    command: "go_live",
+    args: {},
+    address: "10.0.0.7",
+  };
   const states = { state_before: "armed", state_after: "armed", lease_epoch: null, lease_sequence: null };
   const audit = { rows: [{ ...line, ...states, accepted: false, detail: "another has control" }], next: "5" };
   const console = await inControl({ ...page([]), audit });
   await fireEvent.click(screen.getByRole("button", { name: "Commands" }));
-  expect((await screen.findByRole("table", { name: "Commands" })).textContent).toContain("another has control");
+  expect((await screen.findByRole("table", { name: "Commands" })).textContent).toMatch(
+    /10\.0\.0\.7.*go live.*another has control/,
+  );
   await fireEvent.click(screen.getByRole("button", { name: "Show older" }));
   expect(asked(console, "audit").at(-1)).toEqual(["5"]);
 });
