@@ -79,6 +79,7 @@ def flown(folder: Path, seconds: float = 1.0, rig: Rig = BENCH) -> Flown:
         bound = {"plan_id": row.id, "plan_hash": plan.info.plan_hash, "rig": rig.name, "rig_hash": rig_hash(rig)}
         write_record(folder / "runs" / f"{RUN}.mcap", rows, bound | {"live": False}, rig=rig.name)
         AuditLog(database).write([_command(word, at, rig.name) for word, at in COMMANDS])
+        AuditLog(database).write([AuditEntry(WALL_NS / 1e9, "eve", "", "login", {}, None, ("", ""), True, None)])
         alarm = Alarm(1, "late", Severity.WARNING, "a tick was late", WALL_NS / 1e9 + 1.25, unit="us", value=900.0)
         AlarmHistory(database).write([RaisedAlarm(rig.name, "life", alarm)])
     finally:

@@ -58,7 +58,7 @@ def verify(
 def lines(
     data_dir: DataDir = None,
     config: Config = None,
-    rig: Annotated[str | None, typer.Option(help="Those of this rig, and those of none.")] = None,
+    rig: Annotated[str | None, typer.Option(help="Those of this rig alone.")] = None,
 ) -> None:
     """Print every line, with its hash, and with all that the hash is of."""
     from fullpose_server.store.audit import read_rows

@@ -174,6 +174,6 @@ def _audit(session: Session, rig: str, started: float, ended: float) -> Iterator
     loaded = session.scalar(select(func.max(AuditRow.at)).where(*loads))
     since = started - BEFORE_S if loaded is None else loaded
     for row in read_rows(session, rig=rig, since=since, until=ended + AFTER_S):
-        if row["at"] > ended and row["rig"] == rig and row["command"] in _BEGINS:
+        if row["at"] > ended and row["command"] in _BEGINS:
             return
         yield row

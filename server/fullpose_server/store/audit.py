@@ -48,8 +48,7 @@ def read_rows(
 ) -> Iterator[dict[str, Any]]:
     """The rows by their `LINKED` columns, the oldest first, from `since` to `until` [s since 1970], of a rig.
 
-    Of a rig means of none too: a plan is made for a rig, and not by its session. What a column cannot hold is given as
-    it is there, for `hash_chain` to find.
+    What a column cannot hold is given as it is there, for `hash_chain` to find.
     """
     columns: list[Any] = [getattr(AuditRow, name) for name in LINKED if name not in ("args", "accepted")]
     columns += [
@@ -62,7 +61,7 @@ def read_rows(
     if until is not None:
         query = query.where(AuditRow.at <= until)
     if rig is not None:
-        query = query.where(AuditRow.rig.in_((rig, "")))
+        query = query.where(AuditRow.rig == rig)
     for found in session.execute(query.execution_options(yield_per=_AT_ONCE)).mappings():
         row: dict[str, Any] = {str(name): value for name, value in found.items()}
         if isinstance(row["args"], str):
