@@ -3,12 +3,14 @@
 import ipaddress
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Self
+from urllib.parse import urlsplit
 
-from pydantic import Field
+from pydantic import Field, SecretStr, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from fullpose_server.logs import LogFormat, LogLevel, LogSettings
+from fullpose_server.people.roles import Role
 
 
 def default_data_dir() -> Path:
@@ -31,6 +33,15 @@ class Settings(BaseSettings):
     port: int = Field(default=8642, ge=0, le=65535)
     data_dir: Path = Field(default_factory=default_data_dir)
     session_hours: float = Field(default=12.0, gt=0.0, le=720.0)  # of a person who signed in with a browser
+    oidc_issuer: str | None = Field(default=None, pattern=r"^https?://[^?#\s]+$")  # people sign in there as well
+    oidc_client_id: str = ""
+    oidc_client_secret: SecretStr | None = None
+    oidc_name: str = "single sign-on"  # what the console calls it
+    oidc_scope: str = "openid profile email"
+    oidc_name_claim: str = "preferred_username"  # who they are here
+    oidc_role_claim: str = "groups"  # what their role follows from: one word, or a list of them
+    oidc_roles: dict[str, Role] = {}  # {"fms-operators": "operator"}: of several the highest
+    oidc_default_role: Role | None = None  # of who has none of these; None: they are not let in
     trusted_proxies: tuple[str, ...] = ("127.0.0.1", "::1")  # who may say for whom they ask (X-Forwarded-For, -Proto)
     allowed_hosts: tuple[str, ...] = ()  # names, beside localhost and addresses, that browsers may reach this server by
     allowed_origins: tuple[str, ...] = ()  # pages of other origins that may use the API
@@ -70,6 +81,17 @@ class Settings(BaseSettings):
     )  # of a sample that is used; None: what the rig can do
     spare_rig_process: bool = True  # one in reserve: a rig whose process dies is back in a second, not in ten
     stop_rigs_on_exit: bool = True  # at an orderly end; a server that is killed leaves its rigs to be adopted again
+
+    @model_validator(mode="after")
+    def _provider(self) -> Self:
+        if self.oidc_issuer is None:
+            return self
+        if not self.oidc_client_id:
+            raise ValueError("oidc_issuer is set: expected oidc_client_id as well")
+        where = urlsplit(self.oidc_issuer)
+        if where.scheme != "https" and not is_loopback(where.hostname or ""):
+            raise ValueError("oidc_issuer: expected https, or an address of this machine")
+        return self
 
     @property
     def log(self) -> LogSettings:

@@ -19,6 +19,7 @@ from fullpose_server.api.deps import Services
 from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
+from fullpose_server.api.provider import Provider
 from fullpose_server.errors import DamagedError, ServerError
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.rig_file import RigStore
@@ -153,7 +154,8 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
             partial(scrub, plans, trajectories, comparisons, runs, quarantine),
             partial(_retain, settings, runs, alarms),
         ),
-        people=People(PeopleStore(database)),
+        people=People(PeopleStore(database), asked=settings.oidc_issuer is not None),
+        provider=Provider.of(settings),
         uploads=_emptied(folder / "uploads"),
     )
     return Served(services, on_demand)

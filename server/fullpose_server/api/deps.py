@@ -16,6 +16,7 @@ from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
 from fullpose_server.api.problems import ApiError
+from fullpose_server.api.provider import Provider
 from fullpose_server.api.stopping import is_name, who_stops
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.formats.rig_file import RigStore
@@ -77,6 +78,7 @@ class Services:
     quarantine: Quarantine
     upkeep: Upkeep
     people: People
+    provider: Provider | None
     uploads: Path  # where what is being received goes
     attempts: Attempts = field(default_factory=Attempts)
     hashing: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(2))  # 64 MiB and a core each

@@ -18,9 +18,11 @@ log = logging.getLogger(__name__)
 class People:
     """Of one server, from `start` until `close`. Everything but `store` belongs to the event loop's thread."""
 
-    def __init__(self, store: PeopleStore) -> None:
+    def __init__(self, store: PeopleStore, *, asked: bool = False) -> None:
+        """`asked`: one must sign in though there is nobody yet, for people come from a provider."""
         self.store = store
-        self.admitted = store.admitted()
+        self._asked = asked
+        self.admitted = store.admitted(asked=asked)
         self._revision = store.revision()
         self._watching: list[Callable[[Admitted], None]] = []
         self._open: dict[asyncio.Event, str] = {}  # of a WebSocket each, with its credential's id
@@ -65,7 +67,7 @@ class People:
 
     def _read(self) -> tuple[int, Admitted]:
         revision = self.store.revision()  # before the rows: what changes between is read again
-        return revision, self.store.admitted()
+        return revision, self.store.admitted(asked=self._asked)
 
     async def _look_on(self) -> None:
         while True:

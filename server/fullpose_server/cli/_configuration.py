@@ -75,7 +75,7 @@ def configured(
 def to_serve(found: Configuration) -> Configuration:
     """The same, where a server may start with it. Raises `ConfigurationError`: the network is for those who sign in."""
     settings = found.settings
-    if not settings.loopback and not has_people(settings.data_dir):
+    if not (settings.loopback or settings.oidc_issuer or has_people(settings.data_dir)):
         raise ConfigurationError(f"{found.origins['host']} = {settings.host}: {NOBODY}")
     return found
 

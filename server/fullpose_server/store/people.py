@@ -84,6 +84,17 @@ class PeopleStore:
         with self._database.begin() as session:
             return session.scalars(select(UserRow).where(UserRow.subject == subject)).one_or_none()
 
+    def sign_in_from(self, subject: str, name: str, role: Role) -> UserRow:
+        """The person who is `subject` to the provider: made at the first sign-in, their role as the provider has it.
+
+        Raises `PersonError` where the name is another's, or the last admin would be none.
+        """
+        known = self.by_subject(subject)
+        if known is not None:
+            return known if known.role == role else self.change(known.name, role=role)
+        self.add(name, role, None, subject)
+        return self.change(name)
+
     def all(self) -> list[UserRow]:
         """By name."""
         with self._database.begin() as session:
@@ -137,8 +148,8 @@ class PeopleStore:
         with self._database.begin() as session:
             return _next(session) - 1
 
-    def admitted(self) -> Admitted:
-        """The credentials that hold now."""
+    def admitted(self, *, asked: bool = False) -> Admitted:
+        """The credentials that hold now; `asked`: one must sign in though there is nobody yet."""
         with self._database.begin() as session:
             people = {row.name: row for row in session.scalars(select(UserRow))}
             rows = session.scalars(select(CredentialRow).where(CredentialRow.revoked.is_(None)))
@@ -147,7 +158,7 @@ class PeopleStore:
                 for row in rows
                 if not people[row.user].disabled
             ]
-        return Admitted(bool(people), held)
+        return Admitted(asked or bool(people), held)
 
 
 def _role(row: CredentialRow, person: UserRow) -> Role:

@@ -26,7 +26,7 @@ WRONG: dict[int | str, dict[str, Any]] = {
 @router.get("/me")
 async def me(services: ServicesDep, person: PersonDep) -> MeOut:
     """Whether one must sign in here, and who one is."""
-    return MeOut(people=services.people.admitted.people, person=person_out(person), provider=None)
+    return MeOut(people=services.people.admitted.people, person=person_out(person), provider=_provider(services))
 
 
 @router.post("/login", responses=WRONG)
@@ -52,7 +52,7 @@ async def login(
     if anew is not None:
         await asyncio.to_thread(services.people.store.rehash, row.name, anew)
     person = await sign_in(services, request, response, row.name, user_agent)
-    return MeOut(people=True, person=person_out(person), provider=None)
+    return MeOut(people=True, person=person_out(person), provider=_provider(services))
 
 
 @router.post("/logout", status_code=204)
@@ -105,6 +105,10 @@ def person_out(person: Credential | None) -> PersonOut | None:
         return None
     until = None if person.until is None else datetime.fromtimestamp(person.until, UTC)
     return PersonOut(name=person.who, role=person.role, via="session" if person.session else "token", until=until)
+
+
+def _provider(services: Services) -> str | None:
+    return None if services.provider is None else services.settings.oidc_name
 
 
 def _try(services: Services, name: str, address: str) -> None:
