@@ -26,6 +26,7 @@ from tools.roles import TARGET, routes, scope_of, table
 
 PASSWORD = "correct horse battery"
 RIG = "vertical-4"
+PATIENT_S = 300.0  # a starved machine is long in starting a rig's process
 
 
 @dataclass
@@ -39,13 +40,13 @@ class Laboratory:
     def client(self, role: str | None) -> httpx.Client:
         """Somebody of that role; None: a stranger."""
         shown = {} if role is None else {"Authorization": f"Bearer {self.tokens[role]}"}
-        return httpx.Client(base_url=f"{self.server.url}/api/v1", timeout=60.0, headers=shown)
+        return httpx.Client(base_url=f"{self.server.url}/api/v1", timeout=PATIENT_S, headers=shown)
 
     @contextmanager
     def browser(self, name: str) -> Iterator[httpx.Client]:
         """Somebody who signed in with a browser."""
         page = {"Origin": self.server.url}
-        with httpx.Client(base_url=f"{self.server.url}/api/v1", timeout=60.0, headers=page) as client:
+        with httpx.Client(base_url=f"{self.server.url}/api/v1", timeout=PATIENT_S, headers=page) as client:
             client.post("/login", json={"name": name, "password": PASSWORD}).raise_for_status()
             yield client
 
