@@ -9,6 +9,7 @@ from tests.support.serving import running, typed
 from tests.support.waiting import until
 
 PASSWORD = "correct horse battery"
+PATIENT_S = 300.0
 
 
 @pytest.mark.parametrize("address", ["0.0.0.0", "::"])
@@ -49,10 +50,12 @@ def test_a_server_takes_in_what_is_typed_while_it_runs(tmp_path: Path) -> None:
     there = ("--data-dir", tmp_path)
     typed("user", "add", "ann", "--role", "admin", "--password-stdin", *there, given=f"{PASSWORD}\n")
     with running("serve", "--host", "0.0.0.0", "--port", "0", *there) as (_, url):
-        assert httpx.get(f"{url}/api/v1/rigs").status_code == 401
+        assert httpx.get(f"{url}/api/v1/rigs", timeout=PATIENT_S).status_code == 401
         token = typed("token", "create", "ann", *there).stdout.strip()
         ident = typed("token", "list", *there).stdout.splitlines()[1].split()[0]
-        with httpx.Client(base_url=f"{url}/api/v1", headers={"Authorization": f"Bearer {token}"}) as ann:
+        with httpx.Client(
+            base_url=f"{url}/api/v1", headers={"Authorization": f"Bearer {token}"}, timeout=PATIENT_S
+        ) as ann:
             until(lambda: ann.get("/rigs").is_success, every_s=0.1)
             assert ann.get("/health").json()["authenticated"]
             assert typed("token", "revoke", ident, *there).returncode == 0

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from urllib.parse import quote
 
 from sqlalchemy import Connection, create_engine, inspect, text
 from sqlalchemy.exc import DBAPIError
@@ -11,6 +10,7 @@ from sqlalchemy.orm import Session
 
 from fullpose_server.errors import DamagedError, FileError, ServerError
 from fullpose_server.store.database import HEAD, NewerDatabaseError
+from fullpose_server.store.readonly import readonly
 
 NAME = "fullpose.db"  # in a data folder
 
@@ -29,14 +29,10 @@ class EarlierDatabaseError(ServerError):
 def reading(path: Path) -> Iterator[Session]:
     """A session that can only read. Raises `FileError` where there is none, `DamagedError`, `EarlierDatabaseError`,
     `NewerDatabaseError`.
-
-    Without a write-ahead log nobody has it open: it is read as a file that does not change, for otherwise SQLite would
-    leave a log that belongs to whoever reads, and the server could not open it.
     """
     if not path.is_file():
         raise FileError(str(path), "the database of a server (name its --data-dir)")
-    still = "" if path.with_name(f"{path.name}-wal").exists() else "&immutable=1"
-    engine = create_engine(f"sqlite:///file:{quote(str(path.resolve()))}?mode=ro{still}&uri=true")
+    engine = create_engine(f"sqlite:///{readonly(path)}&uri=true")
     try:
         with engine.connect() as connection:
             _check_revision(path, connection)
