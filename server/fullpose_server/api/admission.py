@@ -45,7 +45,11 @@ class Admission:
         if person is None or scope["type"] == "http":
             await self._app(scope, receive, send)
         else:
-            await _while_let_in(people, person, self._app(scope, receive, sending := _Ending(send)), sending)
+            gone = people.ends_with(person.id, needed(scope) or Role.VIEWER)
+            try:
+                await _until(gone, self._app(scope, receive, sending := _Ending(send)), sending)
+            finally:
+                people.forget(gone)
 
 
 def admit(people: People, scope: Scope) -> Credential | None:
@@ -93,17 +97,20 @@ class _Ending:
             await self._send({"type": "websocket.close", "code": code, "reason": reason})
 
 
-async def _while_let_in(people: People, person: Credential, served: Awaitable[None], sending: _Ending) -> None:
-    """Serve a WebSocket until it ends, or its person is let in no longer."""
-    gone = people.ends_with(person.id)
+async def _until(gone: asyncio.Event, served: Awaitable[None], sending: _Ending) -> None:
+    """Serve a WebSocket until it ends, or its person is let in no longer.
+
+    Nothing that it sends is taken from then on, though it reads nothing and its end cannot be told.
+    """
     serving, waiting = asyncio.ensure_future(served), asyncio.create_task(gone.wait())
     try:
         await asyncio.wait((serving, waiting), return_when=asyncio.FIRST_COMPLETED)
         if not serving.done():
-            await sending.end(UNKNOWN, "this token or session has ended: sign in again")
-            await asyncio.wait((serving,), timeout=_END_S)
+            serving.cancel()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(_END_S):
+                    await sending.end(UNKNOWN, "this token or session has ended, or may this no longer: sign in again")
     finally:
-        people.forget(gone)
         for task in (serving, waiting):
             task.cancel()
         with suppress(asyncio.CancelledError):

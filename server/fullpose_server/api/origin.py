@@ -49,7 +49,7 @@ class OriginGuard:
         origin = headers.get("origin")
         if origin is None or (scope["type"] == "http" and scope["method"] in SAFE):
             return None
-        if origin in self._settings.allowed_origins or urlsplit(origin).netloc == host:
+        if origin in self._settings.allowed_origins or _netloc(origin) == host:
             return None
         return f"origin {origin[:80]!r} may not use this server: name it in allowed_origins"
 
@@ -70,6 +70,13 @@ def is_stop(scope: Scope) -> bool:
         return path == f"{API}{STOP_CHANNEL}"
     target = of_rig(path) if scope["method"] == "POST" else None
     return target is not None and target[1] in NEEDS_NO_LEASE
+
+
+def _netloc(origin: str) -> str | None:
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:  # brackets that do not pair
+        return None
 
 
 def _is_address(name: str) -> bool:

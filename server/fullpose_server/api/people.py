@@ -9,6 +9,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from fullpose_server.errors import ServerError
 from fullpose_server.people.admitted import Admitted
+from fullpose_server.people.roles import Role
 from fullpose_server.store.people import PeopleStore
 
 LOOK_S = 1.0  # a change on the command line, in another process, is in force as soon as that
@@ -25,7 +26,8 @@ class People:
         self.admitted = store.admitted(asked=asked)
         self._revision = store.revision()
         self._watching: list[Callable[[Admitted], None]] = []
-        self._open: dict[asyncio.Event, str] = {}  # of a WebSocket each, with its credential's id
+        self._open: dict[asyncio.Event, tuple[str, Role]] = {}  # of a WebSocket each: credential, what it needs
+        self._reading = asyncio.Lock()  # or what was read first could be taken in last
         self._task: asyncio.Task[None] | None = None
         self._error = ""
 
@@ -45,16 +47,17 @@ class People:
 
     async def refresh(self) -> None:
         """Take in what was changed. Raises `StorageError`."""
-        self._revision, admitted = await asyncio.to_thread(self._read)
-        self.admitted = admitted
-        for tell in self._watching:
-            tell(admitted)
-        self._end_those_without()
+        async with self._reading:
+            self._revision, admitted = await asyncio.to_thread(self._read)
+            self.admitted = admitted
+            for tell in self._watching:
+                tell(admitted)
+            self._end_those_without()
 
-    def ends_with(self, credential: str) -> asyncio.Event:
-        """Set when this credential holds no longer; to be given back by `forget`."""
+    def ends_with(self, credential: str, role: Role) -> asyncio.Event:
+        """Set when this credential holds no longer, or is less than `role`; to be given back by `forget`."""
         gone = asyncio.Event()
-        self._open[gone] = credential
+        self._open[gone] = (credential, role)
         return gone
 
     def forget(self, gone: asyncio.Event) -> None:
@@ -76,12 +79,14 @@ class People:
                 if await asyncio.to_thread(self.store.revision) != self._revision:
                     await self.refresh()
                 self._error = ""
-            except (ServerError, SQLAlchemyError) as cause:  # who was let in stays so, and nobody else is
-                self._error = str(cause).splitlines()[0]
+            except Exception as cause:  # whatever it is: who was let in stays so, and it is looked again
+                if not isinstance(cause, (ServerError, SQLAlchemyError)):
+                    log.exception("looking who is let in")
+                self._error = f"{type(cause).__name__}: {cause}".splitlines()[0]
             self._end_those_without()
 
     def _end_those_without(self) -> None:
         now = time.time()
-        for gone, credential in self._open.items():
-            if not self.admitted.still(credential, now):
+        for gone, (credential, role) in self._open.items():
+            if not self.admitted.still(credential, role, now):
                 gone.set()

@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections import deque
 from dataclasses import dataclass
 
 from fullpose_server.api.deps import Services
@@ -86,6 +87,7 @@ class Keeper:
         self._gate = gate
         self._heard = time.monotonic()
         self._begun = False  # it has told something
+        self._untold: deque[messages.ToGate] = deque()
         self._running.watch(self._changed)
         self._begin()
         self._people.watch(self._let_in)
@@ -101,6 +103,7 @@ class Keeper:
         self._watch.cancel()
         await asyncio.gather(self._watch, return_exceptions=True)
         self._loop.remove_reader(self._gate.link)
+        self._loop.remove_writer(self._gate.link)
         self._listener.close()
         await asyncio.to_thread(self._gate.end)
 
@@ -108,6 +111,7 @@ class Keeper:
 
     def _begin(self) -> None:
         self._heard, self._begun = time.monotonic(), False
+        self._untold.clear()
         self._loop.add_reader(self._gate.link, self._hear, self._gate)
         for process in self._running.all():
             self._changed(process.rig, process)
@@ -134,6 +138,7 @@ class Keeper:
             log.error("the stop gate, process %d, is started anew: %s", self._gate.process.pid, why)
             self._status.down_since = time.time()
             self._loop.remove_reader(self._gate.link)
+            self._loop.remove_writer(self._gate.link)
             with contextlib.suppress(ProcessLookupError):
                 self._gate.process.kill()
 
@@ -144,14 +149,29 @@ class Keeper:
             self._send(messages.RigRuns(rig, process.pid, str(process.memory)))
 
     def _let_in(self, admitted: Admitted) -> None:
-        for part in messages.let_in(admitted):
-            self._send(part)
+        newer = messages.let_in(admitted)  # it replaces what the gate has heard a part of, too
+        self._untold = deque([*(each for each in self._untold if not isinstance(each, messages.LetIn)), *newer])
+        self._flush()
 
     def _send(self, message: messages.ToGate) -> None:
+        self._untold.append(message)
+        self._flush()
+
+    def _flush(self) -> None:
+        """Tell what is to be told, as far as the gate takes it; later the rest."""
+        if self._status.down_since is not None:
+            return  # a new one is told all of it
+        link = self._gate.link
         try:
-            messages.send(self._gate.link, message)
+            while self._untold:
+                messages.send(link, self._untold[0])
+                self._untold.popleft()
+        except BlockingIOError:
+            self._loop.add_writer(link, self._flush)  # a gate that never takes it is silent too, and replaced for that
         except OSError as cause:
             self._lost(f"it takes no message ({cause})")
+        else:
+            self._loop.remove_writer(link)
 
     # --- what it says ---
 

@@ -7,7 +7,6 @@ matter (`passwords`).
 import hashlib
 import secrets
 from collections.abc import Iterable
-from http.cookies import CookieError, SimpleCookie
 from typing import NamedTuple
 
 import msgspec
@@ -59,10 +58,10 @@ class Admitted:
             return None
         return found if holds(found, now) else None
 
-    def still(self, credential: str, now: float) -> bool:
-        """Whether the credential of this id holds."""
+    def still(self, credential: str, role: Role, now: float) -> bool:
+        """Whether the credential of this id holds, and may what needs `role`."""
         found = self._ids.get(credential)
-        return found is not None and holds(found, now)
+        return found is not None and holds(found, now) and found.role.may(role)
 
 
 def holds(credential: Credential, now: float) -> bool:
@@ -88,8 +87,7 @@ def shown_by(authorization: str | None, cookie: str | None) -> Shown | None:
         return Shown(authorization[len(_BEARER) :].strip()[:_LONGEST], cookie=False)
     if cookie is None:
         return None
-    try:
-        found = SimpleCookie(cookie).get(COOKIE)
-    except CookieError:
-        return None
-    return None if found is None else Shown(found.value[:_LONGEST], cookie=True)
+    # Not by http.cookies, which finds none where one of another program on this host is not as it expects.
+    named = (each.partition("=") for each in cookie.split(";"))
+    found = [value.strip().strip('"') for name, _, value in named if name.strip() == COOKIE]
+    return Shown(found[-1][:_LONGEST], cookie=True) if found else None

@@ -19,6 +19,8 @@ def hashed(password: str, name: str) -> str:
         raise PasswordError(
             f"the password has {len(password)} characters: expected {SHORTEST} to {LONGEST}, a sentence will do"
         )
+    if not _is_text(password):
+        raise PasswordError("the password is not text in UTF-8: expected characters")
     if name.casefold() in password.casefold() and len(password) < len(name) + SHORTEST:
         raise PasswordError("the password is little more than the name: expected one that nobody guesses")
     if len(set(password)) < 5:
@@ -31,10 +33,15 @@ def matches(password: str, known: str | None) -> tuple[bool, str | None]:
 
     Without a hash (nobody of that name, or no password) the answer takes as long, and is no.
     """
-    if len(password) > LONGEST:
+    if len(password) > LONGEST or not _is_text(password):
         return False, None
     right, anew = _hasher().verify_and_update(password, known or _nobody())
     return (right, anew) if known else (False, None)
+
+
+def _is_text(password: str) -> bool:
+    """Whether it can be written as UTF-8: what a terminal gives need not be."""
+    return not any("\ud800" <= character <= "\udfff" for character in password)
 
 
 @cache

@@ -36,6 +36,7 @@ class Database:
         path.parent.mkdir(parents=True, exist_ok=True)
         with suppress(OSError):  # SQLite says better what is wrong
             path.touch(mode=0o600, exist_ok=True)  # hashes of passwords are in it
+            path.chmod(0o600)  # one that an earlier version made
         self.engine = _engine(path, busy_s)
         try:
             _check(self.engine)

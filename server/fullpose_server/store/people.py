@@ -1,10 +1,12 @@
 """People and their credentials, as rows. What a server lets in is read from here (`admitted`), also while it runs."""
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from uuid import uuid4
 
-from sqlalchemy import Select, delete, func, select
+from sqlalchemy import Select, delete, func, select, text
 from sqlalchemy.orm import Session
 
 from fullpose_server.errors import NotFoundError, ServerError
@@ -15,6 +17,8 @@ from fullpose_server.store.database import Database
 from fullpose_server.store.tables import CredentialRow, UserRow
 
 MOST_SESSIONS = 20  # of one person: of more the oldest ends
+MOST_TOKENS = 100  # of one person, that hold: every one is kept in memory, and told to the stop gate
+LONGEST_LABEL = 200
 KEPT_S = 30 * 86400.0  # so long what has run out or was revoked can still be looked up
 
 
@@ -36,12 +40,22 @@ class PeopleStore:
     def __init__(self, database: Database) -> None:
         self._database = database
 
+    @contextmanager
+    def _changing(self) -> Iterator[Session]:
+        """A transaction that has the database to itself from its first look on.
+
+        Two that looked before either wrote would both leave one admin, or give two changes one number.
+        """
+        with self._database.begin() as session:
+            session.execute(text("BEGIN IMMEDIATE"))
+            yield session
+
     # --- people ---
 
     def add(self, name: str, role: Role, password: str | None, subject: str | None = None) -> None:
         """A new person. Raises `PersonError` where there is one of that name, `PasswordError`."""
         kept = None if password is None else hashed(password, name)
-        with self._database.begin() as session:
+        with self._changing() as session:
             if _find(session, name) is not None:
                 raise PersonError(f"there is a user {name} already")
             # The number is the next before the row is there.
@@ -49,29 +63,42 @@ class PeopleStore:
             row.changed = _next(session)
             session.add(row)
 
-    def change(self, name: str, *, role: Role | None = None, disabled: bool | None = None) -> UserRow:
-        """Another role, or shut out and let in again. Raises `NotFoundError`, `PersonError` for the last admin."""
-        with self._database.begin() as session:
+    def change(
+        self,
+        name: str,
+        *,
+        role: Role | None = None,
+        disabled: bool | None = None,
+        password: str | None = None,
+        keep: str | None = None,
+    ) -> UserRow:
+        """Another role, shut out or let in again, another password: all of it or nothing.
+
+        With another password every session ends, but that of the id `keep`. Raises `NotFoundError`, `PasswordError`,
+        `PersonError` for the last admin.
+        """
+        kept = None if password is None else hashed(password, name)
+        with self._changing() as session:
             row = _known(session, name)
             after = (role or Role(row.role), row.disabled if disabled is None else disabled)
             if _is_admin(row) and after != (Role.ADMIN, False) and _admins(session) == 1:
                 raise PersonError(f"{name} is the last admin: make another one first")
             row.role, row.disabled = after
             row.changed = _next(session)
+            if kept is not None:
+                row.password = kept
+                others = _of(row.name).where(CredentialRow.session, CredentialRow.id != (keep or ""))
+                for open_ in session.scalars(others):
+                    _revoke(session, open_)
             return row
 
     def set_password(self, name: str, password: str, *, keep: str | None = None) -> None:
-        """Another password: every session ends, but that of the id `keep`. Raises `NotFoundError`, `PasswordError`."""
-        kept = hashed(password, name)
-        with self._database.begin() as session:
-            row = _known(session, name)
-            row.password, row.changed = kept, _next(session)
-            for open_ in session.scalars(_of(name).where(CredentialRow.session, CredentialRow.id != (keep or ""))):
-                _revoke(session, open_)
+        """As `change` does it."""
+        self.change(name, password=password, keep=keep)
 
     def rehash(self, name: str, kept: str) -> None:
         """The same password, by a hash that costs more."""
-        with self._database.begin() as session:
+        with self._changing() as session:
             _known(session, name).password = kept
 
     def get(self, name: str) -> UserRow | None:
@@ -104,9 +131,8 @@ class PeopleStore:
 
     def open_session(self, name: str, hours: float, label: str, address: str | None) -> Given:
         """A browser's session. Raises `NotFoundError`."""
-        with self._database.begin() as session:
-            _known(session, name)
-            now = time.time()
+        with self._changing() as session:
+            name, now = _known(session, name).name, time.time()
             forgotten = (CredentialRow.until < now - KEPT_S) | (CredentialRow.revoked < now - KEPT_S)
             session.execute(delete(CredentialRow).where(forgotten))
             newest = _of(name).where(CredentialRow.session).order_by(CredentialRow.created.desc())
@@ -116,17 +142,21 @@ class PeopleStore:
 
     def make_token(self, name: str, label: str, role: Role | None, days: float | None) -> Given:
         """A token of a person, of at most their role. Raises `NotFoundError`, `PersonError`."""
-        with self._database.begin() as session:
+        if not 1 <= len(label) <= LONGEST_LABEL or not label.isprintable():
+            raise PersonError(f"label {label[:40]!r}: expected 1 to {LONGEST_LABEL} characters on one line")
+        with self._changing() as session:
             row = _known(session, name)
             if role is not None and not Role(row.role).may(role):
                 raise PersonError(f"{row.name} is {row.role}: a token of theirs cannot be {role}")
+            if _tokens_held(session, row.name) >= MOST_TOKENS:
+                raise PersonError(f"{row.name} has {MOST_TOKENS} tokens: revoke one first")
             until = None if days is None else time.time() + 86400.0 * days
             made = CredentialRow(user=row.name, role=role, session=False, until=until)
             return _give(session, made, label, None)
 
     def revoke(self, credential: str, of: str | None = None) -> CredentialRow:
         """End a token or session, `of` this person where one is named. Raises `NotFoundError`."""
-        with self._database.begin() as session:
+        with self._changing() as session:
             row = session.get(CredentialRow, credential)
             if row is None or row.revoked is not None or (of is not None and row.user != of):
                 raise NotFoundError("token", credential)
@@ -151,6 +181,7 @@ class PeopleStore:
     def admitted(self, *, asked: bool = False) -> Admitted:
         """The credentials that hold now; `asked`: one must sign in though there is nobody yet."""
         with self._database.begin() as session:
+            session.execute(text("BEGIN"))  # one look: both tables as of one moment
             people = {row.name: row for row in session.scalars(select(UserRow))}
             rows = session.scalars(select(CredentialRow).where(CredentialRow.revoked.is_(None)))
             held = [
@@ -183,8 +214,17 @@ def _of(name: str) -> Select[CredentialRow]:
     return select(CredentialRow).where(CredentialRow.user == name, CredentialRow.revoked.is_(None))
 
 
+def _tokens_held(session: Session, name: str) -> int:
+    held = CredentialRow.until.is_(None) | (CredentialRow.until > time.time())
+    wanted = select(func.count()).select_from(CredentialRow)
+    mine = (CredentialRow.user == name, CredentialRow.revoked.is_(None), ~CredentialRow.session)
+    return session.scalar(wanted.where(*mine, held)) or 0
+
+
 def _find(session: Session, name: str) -> UserRow | None:
-    return session.scalars(select(UserRow).where(func.lower(UserRow.name) == name.lower())).one_or_none()
+    # Not in SQL: SQLite's lower() knows the letters of ASCII alone.
+    wanted = name.casefold()
+    return next((row for row in session.scalars(select(UserRow)) if row.name.casefold() == wanted), None)
 
 
 def _known(session: Session, name: str) -> UserRow:

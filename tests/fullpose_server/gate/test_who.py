@@ -1,18 +1,28 @@
 """The gate in front of a server with people: any of them stops a rig though the server does not answer; no stranger."""
 
+import asyncio
 import json
 import os
 import signal
-from collections.abc import Iterator
+import socket
+import subprocess
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from fullpose_server.api.deps import Services
+from fullpose_server.api.front import FrontStatus
 from fullpose_server.api.problems import ApiError
 from fullpose_server.gate import messages
+from fullpose_server.gate.keeper import GateProcess, Keeper
+from fullpose_server.gate.served import Connections
 from fullpose_server.gate.who import Who
+from fullpose_server.logs import LogFormat, LogLevel, LogSettings
 from fullpose_server.people.admitted import Admitted, Credential, proof_of
 from fullpose_server.people.roles import Role
 from fullpose_server.store.database import Database
@@ -53,6 +63,65 @@ def test_who_is_let_in_is_told_in_parts_and_in_force_with_the_last() -> None:
     for part in messages.let_in(Admitted(False)):
         who.take(part)
     assert let_in(who, "anything") is None
+
+
+class _Nobody:
+    """Of a gate's process: nothing is to become of it here."""
+
+    pid = 0
+
+    def kill(self) -> None:
+        raise AssertionError("a gate that is slow is not one that is lost")
+
+    def wait(self, _longest_s: float = 0.0) -> None:
+        """It has ended."""
+
+
+def test_a_gate_is_told_of_more_people_than_its_link_takes_at_once() -> None:
+    """Otherwise one viewer with a loop that makes tokens takes the server from everybody, and the E-stop too."""
+    people = [Credential(str(k), proof_of(str(k)), f"p{k}", Role.VIEWER, None, session=False) for k in range(20_000)]
+    admitted = Admitted(True, people)
+
+    async def told() -> Who:
+        ours, theirs = messages.link()
+        ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 300_000)
+        gate = GateProcess(
+            cast("subprocess.Popen[bytes]", _Nobody()), ours, LogSettings(LogFormat.TEXT, LogLevel.WARNING), ()
+        )
+        running = SimpleNamespace(watch=lambda _tell: None, all=list)
+        tells: list[Callable[[Admitted], None]] = []
+        services = SimpleNamespace(
+            hosts=SimpleNamespace(running=running),
+            people=SimpleNamespace(admitted=Admitted(True, people[:9_000]), watch=tells.append),
+            trail=None,
+            front=FrontStatus(),
+        )
+        keeper = Keeper(socket.socket(), gate, cast(Connections, []), 1, cast(Services, services))
+        tells[0](admitted)  # and again, before the first was taken
+        who = Who()
+
+        def hear() -> None:
+            match messages.for_gate(theirs):
+                case messages.LetIn() as part:
+                    who.take(part)
+                    if part.last and len(who_knows(who)) == len(people):
+                        done.set()
+
+        done = asyncio.Event()
+        asyncio.get_running_loop().add_reader(theirs, hear)
+        async with asyncio.timeout(60.0):
+            await done.wait()
+        asyncio.get_running_loop().remove_reader(theirs)
+        await keeper.close()
+        theirs.close()
+        return who
+
+    assert let_in(asyncio.run(told()), "19999") == "p19999"
+
+
+def who_knows(who: Who) -> list[Credential]:
+    """All that it was told."""
+    return [] if who._admitted is None else who._admitted.all()
 
 
 @pytest.fixture

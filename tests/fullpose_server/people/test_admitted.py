@@ -37,7 +37,9 @@ def test_a_secret_is_known_by_its_proof_and_in_its_own_place() -> None:
 def test_a_session_holds_until_its_end() -> None:
     assert KNOWN.find(Shown(SESSION, cookie=True), 99.9) is not None
     assert KNOWN.find(Shown(SESSION, cookie=True), 100.0) is None
-    assert (KNOWN.still("s", 99.9), KNOWN.still("s", 100.0), KNOWN.still("gone", 0.0)) == (True, False, False)
+    assert (KNOWN.still("s", Role.VIEWER, 99.9), KNOWN.still("s", Role.VIEWER, 100.0)) == (True, False)
+    assert not KNOWN.still("gone", Role.VIEWER, 0.0)
+    assert not KNOWN.still("s", Role.ADMIN, 99.9)
 
 
 @given(st.text(max_size=40) | st.just(TOKEN[:-1]), st.text(max_size=40))
@@ -53,6 +55,12 @@ def test_headers_of_any_kind_show_nothing_that_is_known(authorization: str, cook
         (f"bearer  {TOKEN} ", None, Shown(TOKEN, cookie=False)),
         (f"Basic {TOKEN}", f"{COOKIE}={SESSION}", None),  # another way to sign in, which there is not
         (None, f"other=1; {COOKIE}={SESSION}; more=2", Shown(SESSION, cookie=True)),
+        (
+            None,
+            f'theirs={{"a": [1, 2]}}; {COOKIE}={SESSION}; [x]=y z',
+            Shown(SESSION, cookie=True),
+        ),  # of another program
+        (None, f"{COOKIE}=tossed; {COOKIE}={SESSION}", Shown(SESSION, cookie=True)),  # the longest path comes first
         (None, "other=1", None),
         (None, None, None),
     ],

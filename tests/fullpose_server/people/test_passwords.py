@@ -18,6 +18,7 @@ def test_the_right_password_and_no_other_is_that_of_the_hash() -> None:
     assert matches(RIGHT.title(), kept)[0] is False
     assert matches(RIGHT, None) == (False, None)
     assert matches("nobody's password", None) == (False, None)
+    assert matches("\ud800 is no text", kept) == (False, None)
     assert matches("x" * 1_000_000, kept) == (False, None)
 
 
@@ -31,7 +32,9 @@ def test_a_hash_that_costs_too_little_is_made_anew() -> None:
     assert matches(RIGHT, anew) == (True, None)
 
 
-@pytest.mark.parametrize("password", ["", "eleven char", "x" * 257, "aaaaaaaaaaaaaaaaaaa", "annika-1234567"])
+@pytest.mark.parametrize(
+    "password", ["", "eleven char", "x" * 257, "aaaaaaaaaaaaaaaaaaa", "annika-1234567", "\udcff\udcfe is no text"]
+)
 def test_what_can_be_guessed_is_no_password(password: str) -> None:
     with pytest.raises(PasswordError, match="expected"):
         hashed(password, "annika")

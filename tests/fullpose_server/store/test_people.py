@@ -1,7 +1,9 @@
 """People and credentials as rows."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
 
 import pytest
 
@@ -142,3 +144,60 @@ def test_an_expired_session_is_let_in_by_nothing(people: PeopleStore) -> None:
     with_ann(people)
     given = people.open_session("ann", 1.0, "a browser", None)
     assert people.admitted().find(Shown(given.secret, cookie=True), LATER) is None
+
+
+def at_once(one: Callable[[], object], other: Callable[[], object]) -> list[object]:
+    """What two threads come back with that begin together: a result or an exception."""
+    begin = Barrier(2)
+
+    def run(what: Callable[[], object]) -> object:
+        begin.wait()
+        try:
+            return what()
+        except PersonError as error:
+            return error
+
+    with ThreadPoolExecutor(2) as threads:
+        return [each.result() for each in [threads.submit(run, what) for what in (one, other)]]
+
+
+def test_two_who_lower_each_other_leave_an_admin(people: PeopleStore, tmp_path: Path) -> None:
+    other = Database(tmp_path / "fullpose.db")  # the command line, say
+    elsewhere = PeopleStore(other)
+    for name in ("ann", "bob"):
+        people.add(name, Role.ADMIN, None)
+    for _ in range(40):
+        at_once(lambda: people.change("ann", role=Role.VIEWER), lambda: elsewhere.change("bob", role=Role.VIEWER))
+        assert sum(row.role == Role.ADMIN for row in people.all()) == 1
+        for name in ("ann", "bob"):
+            people.change(name, role=Role.ADMIN)
+    other.close()
+
+
+def test_no_two_changes_have_one_number(people: PeopleStore, tmp_path: Path) -> None:
+    """Or a server that has seen the first would not look for the second: a revoked token would hold on."""
+    other = Database(tmp_path / "fullpose.db")
+    elsewhere = PeopleStore(other)
+    with_ann(people)
+    for _ in range(40):
+        at_once(lambda: people.make_token("ann", "a", None, 1), lambda: elsewhere.make_token("ann", "b", None, 1))
+    numbers = [row.changed for row in people.tokens()]
+    assert len(set(numbers)) == len(numbers) == 80
+    other.close()
+
+
+def test_a_person_has_so_many_tokens(people: PeopleStore, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rows, "MOST_TOKENS", 3)
+    with_ann(people)
+    made = [people.make_token("ann", "a", None, None).id for _ in range(3)]
+    with pytest.raises(PersonError, match="3 tokens"):
+        people.make_token("ann", "a", None, None)
+    people.revoke(made[0])
+    people.make_token("ann", "a", None, None)
+
+
+def test_a_database_of_before_there_were_people_is_its_owners_alone(tmp_path: Path) -> None:
+    Database(tmp_path / "fullpose.db").close()
+    (tmp_path / "fullpose.db").chmod(0o644)
+    Database(tmp_path / "fullpose.db").close()
+    assert (tmp_path / "fullpose.db").stat().st_mode & 0o777 == 0o600

@@ -726,7 +726,7 @@ export interface paths {
         put?: never;
         /**
          * Make Token
-         * @description A token of one's own, of at most one's own role.
+         * @description A token of one's own, of at most one's own role. One that is made by a token ends with it at the latest.
          */
         post: operations["make_token_api_v1_tokens_post"];
         delete?: never;

@@ -8,7 +8,7 @@ from contextlib import suppress
 from fastapi import APIRouter, WebSocket
 
 from fullpose_server.api.commanding import by_priority
-from fullpose_server.api.deps import AddressDep, Services, ServicesDep, WhoDep
+from fullpose_server.api.deps import AddressDep, PersonDep, Services, ServicesDep, WhoDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Wire
 from fullpose_server.api.schemas.session import SessionOut
@@ -27,16 +27,19 @@ router = APIRouter(tags=["stream"])
 
 
 @router.websocket("/rigs/{rig}/stream")
-async def stream(rig: str, socket: WebSocket, services: ServicesDep, who: WhoDep, address: AddressDep) -> None:
+async def stream(
+    rig: str, socket: WebSocket, services: ServicesDep, person: PersonDep, who: WhoDep, address: AddressDep
+) -> None:
     """hello, then what the client subscribes to."""
     await asyncio.to_thread(services.rigs.get, rig)
     await socket.accept()
-    await StreamClient(socket, _Rig(rig, services, who, address)).run()
+    await StreamClient(socket, _Rig(rig, services, who, address, known=person is not None)).run()
 
 
 class _Rig:
-    def __init__(self, rig: str, services: Services, who: str, address: str | None) -> None:
+    def __init__(self, rig: str, services: Services, who: str, address: str | None, *, known: bool) -> None:
         self._rig = rig
+        self._known = known  # who is signed in has no other name
         self._who = who
         self._address = address
         self._services = services
@@ -68,7 +71,7 @@ class _Rig:
         raise ApiError(422, "not-a-replay", f"{message.type}: a rig as it lives can only be watched")
 
     def stop(self, message: StopNow) -> Awaitable[Wire]:
-        who = message.client or self._who
+        who = self._who if self._known else message.client or self._who
         done = by_priority(self._services, self._rig, Command(message.type), who, self._address)
 
         async def answered() -> Wire:

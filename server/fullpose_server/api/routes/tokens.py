@@ -1,6 +1,7 @@
 """Tokens of the API: what programs show. Everybody makes and revokes their own; admins see and revoke all."""
 
 import asyncio
+import time
 from datetime import UTC, datetime
 
 from fastapi import APIRouter, Request
@@ -27,7 +28,7 @@ async def list_tokens(services: ServicesDep, person: PersonDep) -> list[TokenOut
 
 @router.post("", status_code=201)
 async def make_token(request: Request, services: ServicesDep, person: PersonDep, body: TokenIn) -> TokenGiven:
-    """A token of one's own, of at most one's own role."""
+    """A token of one's own, of at most one's own role. One that is made by a token ends with it at the latest."""
     owner = signed_in(person)
     store = services.people.store
     given: list[Given] = []
@@ -36,7 +37,11 @@ async def make_token(request: Request, services: ServicesDep, person: PersonDep,
         role = owner.role  # a token that is less than its person makes none that is more
     if role is not None and not owner.role.may(role):
         raise forbidden(owner, role)
-    await changed(services, lambda: given.append(store.make_token(owner.who, body.label, role, body.days)))
+    days = body.days
+    if not owner.session and owner.until is not None:
+        left = (owner.until - time.time()) / 86400.0
+        days = left if days is None else min(days, left)
+    await changed(services, lambda: given.append(store.make_token(owner.who, body.label, role, days)))
     made = given[0]
     audit_of_people(services, owner.who, "token create", address_of(request), about=f"{made.id}: {body.label}")
     row = next(row for row in await asyncio.to_thread(store.tokens, owner.who) if row.id == made.id)

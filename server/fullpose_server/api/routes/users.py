@@ -42,13 +42,8 @@ async def change_user(
     store = services.people.store
     role = None if body.role is None else Role(body.role)
 
-    def change() -> None:
-        store.change(name, role=role, disabled=body.disabled)
-        if body.password is not None:
-            store.set_password(name, body.password)
-
     async with services.hashing:
-        await changed(services, change)
+        await changed(services, lambda: store.change(name, role=role, disabled=body.disabled, password=body.password))
     told = body.model_dump(exclude_none=True, exclude={"password"}) | ({"password": "another"} if body.password else {})
     about = f"{name}: {', '.join(f'{key} {value}' for key, value in told.items()) or 'nothing'}"
     audit_of_people(services, admin.who, "user change", address_of(request), about=about)
