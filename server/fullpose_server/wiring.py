@@ -46,6 +46,7 @@ from fullpose_server.store.audit_trail import AuditTrail
 from fullpose_server.store.database import Database
 from fullpose_server.store.disk import Disk
 from fullpose_server.store.people import PeopleStore
+from fullpose_server.store.people_known import had_people
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.quarantine import Quarantine
 from fullpose_server.store.trajectories import TrajectoryStore
@@ -110,6 +111,14 @@ def _opened(path: Path, quarantine: Quarantine) -> Database:
         return Database(path)
 
 
+def _had_people(quarantine: Quarantine) -> bool:
+    """Whether a database that was moved aside, now or at an earlier start, had people: they are not nobody since."""
+    had = any(had_people(file) for file in quarantine.folder.glob("*-database-*/fullpose.db"))
+    if had:
+        log.warning("a damaged database had users: where no others are known, nobody is let in but to stop a rig")
+    return had
+
+
 def _build(settings: Settings, folder: Path, database: Database, scenes: SceneServer, quarantine: Quarantine) -> Served:
     scrub_rigs(folder / "rigs", quarantine)
     rigs = RigStore(folder / "rigs", _operating(settings))
@@ -154,7 +163,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
             partial(scrub, plans, trajectories, comparisons, runs, quarantine),
             partial(_retain, settings, runs, alarms),
         ),
-        people=People(PeopleStore(database), asked=settings.oidc_issuer is not None),
+        people=People(PeopleStore(database), asked=settings.oidc_issuer is not None, lost=_had_people(quarantine)),
         provider=Provider.of(settings),
         uploads=_emptied(folder / "uploads"),
     )

@@ -1,6 +1,5 @@
 """What the routes work with: one object, built by the app's lifespan, reached through `Annotated` dependencies."""
 
-import asyncio
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike
 from starlette.requests import HTTPConnection
 
 from fullpose_server.api.front import FrontStatus
+from fullpose_server.api.hashing import Hashing
 from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
@@ -81,7 +81,7 @@ class Services:
     provider: Provider | None
     uploads: Path  # where what is being received goes
     attempts: Attempts = field(default_factory=Attempts)
-    hashing: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(2))  # 64 MiB and a core each
+    hashing: Hashing = field(default_factory=Hashing)
     front: FrontStatus = field(default_factory=FrontStatus)
     frames: dict[str, FrameSource] = field(default_factory=dict)
     live_sources: set[str] = field(default_factory=set)  # rigs that have one connected

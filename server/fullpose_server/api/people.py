@@ -13,23 +13,36 @@ from fullpose_server.people.roles import Role
 from fullpose_server.store.people import PeopleStore
 
 LOOK_S = 1.0  # a change on the command line, in another process, is in force as soon as that
+LOST = (
+    "the database that has the users was damaged: nobody is let in, and whoever asks may stop a rig, until a backup is"
+    " in its place or `fullpose user add NAME --role admin` makes somebody for this data folder"
+)
 log = logging.getLogger(__name__)
 
 
 class People:
     """Of one server, from `start` until `close`. Everything but `store` belongs to the event loop's thread."""
 
-    def __init__(self, store: PeopleStore, *, asked: bool = False) -> None:
-        """`asked`: one must sign in though there is nobody yet, for people come from a provider."""
+    def __init__(self, store: PeopleStore, *, asked: bool = False, lost: bool = False) -> None:
+        """`asked`: one must sign in though there is nobody yet, for people come from a provider.
+
+        `lost`: who they were is not known any more: until there is somebody, nobody is let in.
+        """
         self.store = store
         self._asked = asked
-        self.admitted = store.admitted(asked=asked)
+        self._lost = lost
+        self.admitted = self._seen(store.admitted(asked=asked))
         self._revision = store.revision()
         self._watching: list[Callable[[Admitted], None]] = []
         self._open: dict[asyncio.Event, tuple[str, Role]] = {}  # of a WebSocket each: credential, what it needs
         self._reading = asyncio.Lock()  # or what was read first could be taken in last
         self._task: asyncio.Task[None] | None = None
         self._error = ""
+
+    @property
+    def may_stop(self) -> Admitted:
+        """Who may stop a rig: whoever asks, where it is not known who people are."""
+        return Admitted(False) if self._lost else self.admitted
 
     def start(self) -> None:
         """Look for changes from here on."""
@@ -49,9 +62,9 @@ class People:
         """Take in what was changed. Raises `StorageError`."""
         async with self._reading:
             self._revision, admitted = await asyncio.to_thread(self._read)
-            self.admitted = admitted
+            self.admitted = self._seen(admitted)
             for tell in self._watching:
-                tell(admitted)
+                tell(self.may_stop)
             self._end_those_without()
 
     def ends_with(self, credential: str, role: Role) -> asyncio.Event:
@@ -66,11 +79,16 @@ class People:
 
     def faults(self) -> list[str]:
         """What is wrong with it; nothing while all is well."""
-        return [f"changes to people are not seen: {self._error}"] if self._error else []
+        found = [LOST] if self._lost else []
+        return [*found, f"changes to people are not seen: {self._error}"] if self._error else found
 
     def _read(self) -> tuple[int, Admitted]:
         revision = self.store.revision()  # before the rows: what changes between is read again
         return revision, self.store.admitted(asked=self._asked)
+
+    def _seen(self, found: Admitted) -> Admitted:
+        self._lost = self._lost and not found.people
+        return Admitted(True) if self._lost else found
 
     async def _look_on(self) -> None:
         while True:

@@ -115,7 +115,7 @@ class Keeper:
         self._loop.add_reader(self._gate.link, self._hear, self._gate)
         for process in self._running.all():
             self._changed(process.rig, process)
-        self._let_in(self._people.admitted)
+        self._let_in(self._people.may_stop)
         if self._ending:
             self.ending()
 

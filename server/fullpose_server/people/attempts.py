@@ -1,9 +1,14 @@
 """How often somebody may try to sign in: by name and address, by address, and by name from wherever it comes."""
 
+import ipaddress
 import time
 
 from limits import RateLimitItemPerHour, RateLimitItemPerMinute, storage, strategies
 
+# So many names are told apart, or a flood of made-up ones would fill the memory; a flood as fast as hashes are made
+# comes to some ten for each in an hour. Which share one, nobody outside can tell: Python's hash differs each time.
+_NAMES = 16_384
+_OWN_NETWORK = 64  # bits of an IPv6 address that are one subscriber's
 # From one address: a person who mistypes goes on, one who tries words does not.
 _ONE = RateLimitItemPerMinute(5)
 _ADDRESS = RateLimitItemPerMinute(30)
@@ -40,5 +45,17 @@ class Attempts:
 
 
 def _keys(name: str, address: str) -> list[tuple[RateLimitItemPerMinute | RateLimitItemPerHour, tuple[str, ...]]]:
-    known = name.casefold()
-    return [(_ONE, ("one", known, address)), (_ADDRESS, ("address", address)), (_NAME, ("name", known))]
+    known, address = name.casefold(), _subscriber(address)
+    some = str(hash(known) % _NAMES)
+    return [(_ONE, ("one", known, address)), (_ADDRESS, ("address", address)), (_NAME, ("name", some))]
+
+
+def _subscriber(address: str) -> str:
+    """Who has 2^64 addresses is one all the same. What a proxy tells need not be an address."""
+    try:
+        known = ipaddress.ip_address(address)
+    except ValueError:
+        return address[:64]
+    if known.version == 4:
+        return str(known)
+    return str(ipaddress.ip_network((known, _OWN_NETWORK), strict=False))

@@ -7,9 +7,19 @@ from pathlib import Path
 from fullpose_server.store.readonly import readonly
 
 
+def had_people(file: Path) -> bool:
+    """Whether a database that is damaged had people, as far as can be seen: by its rows, or the hash of a password."""
+    logged = file.with_name(f"{file.name}-wal")
+    return _has_rows(file) or any(b"$argon2id$" in each.read_bytes() for each in (file, logged) if each.is_file())
+
+
 def has_people(data_dir: Path) -> bool:
     """Whether somebody could sign in to a server on this folder. A database that cannot be read has nobody."""
-    file = (data_dir / "fullpose.db").resolve()
+    return _has_rows(data_dir / "fullpose.db")
+
+
+def _has_rows(file: Path) -> bool:
+    file = file.resolve()
     if not file.is_file():
         return False
     try:

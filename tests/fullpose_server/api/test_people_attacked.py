@@ -1,12 +1,18 @@
 """What those tried at a server with people who may not, and what they found."""
 
+import asyncio
 import json
+from pathlib import Path
 
 import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from fullpose_server.api import admission
 from fullpose_server.people.roles import Role
+from fullpose_server.store.database import Database
+from fullpose_server.store.people import PeopleStore
+from tests.fullpose_server.api.live_server import live_server
 from tests.fullpose_server.api.test_people import (  # noqa: F401  # the fixture, by its name
     PASSWORD,
     RIG,
@@ -107,3 +113,67 @@ def test_a_label_is_one_line(lab: Laboratory) -> None:  # noqa: F811
     with lab.client("viewer") as viewer:
         answer = viewer.post("/tokens", json={"label": "two\nlines \x1b[31m"})
     assert (answer.status_code, problem(answer)) == (409, "person")
+
+
+def test_a_damaged_database_of_people_lets_nobody_in_but_to_stop(tmp_path: Path) -> None:
+    database = Database(tmp_path / "fullpose.db")
+    PeopleStore(database).add("ann", Role.ADMIN, PASSWORD)
+    database.close()
+    whole = (tmp_path / "fullpose.db").read_bytes()
+    (tmp_path / "fullpose.db").write_bytes(b"damaged!" * 64 + whole[512:])
+    for _ in range(2):  # and a start later too
+        with live_server(tmp_path) as server:
+            assert server.http.get("/me").json()["people"]
+            assert server.http.get("/rigs").status_code == 401
+            assert server.http.post(f"/rigs/{RIG}/lease").status_code == 401
+            assert server.http.get("/alive").json()["status"] == "degraded"
+    with live_server(tmp_path) as server:
+        again = Database(tmp_path / "fullpose.db")
+        people = PeopleStore(again)
+        people.add("bob", Role.ADMIN, PASSWORD)
+        again.close()
+        bob = {"name": "bob", "password": PASSWORD}
+        until(lambda: server.http.post("/login", json=bob).is_success, every_s=0.2)
+
+
+def test_a_flood_of_sign_ins_keeps_nobody_waiting_behind_it(lab: Laboratory) -> None:  # noqa: F811
+    async def flood() -> list[httpx.Response]:
+        limits = httpx.Limits(max_connections=80)
+        async with httpx.AsyncClient(base_url=f"{lab.server.url}/api/v1", timeout=120.0, limits=limits) as stranger:
+            tries = (
+                stranger.post(
+                    "/login",
+                    json={"name": f"name{k}", "password": "a guess of many"},
+                    headers={"X-Forwarded-For": f"10.0.{k}.1"},
+                )
+                for k in range(80)
+            )
+            return await asyncio.gather(*tries)
+
+    answers = asyncio.run(flood())
+    assert {answer.status_code for answer in answers} == {401, 429}
+    turned_away = [answer for answer in answers if answer.status_code == 429]
+    assert {answer.headers["retry-after"] for answer in turned_away} == {"2"}
+
+
+def test_a_socket_that_reads_nothing_ends_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(admission, "_END_S", 0.01)
+    taken = asyncio.Event()
+
+    async def never(_message: object) -> None:
+        await asyncio.Event().wait()
+
+    async def served() -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            taken.set()
+
+    async def ended() -> None:
+        gone = asyncio.Event()
+        gone.set()
+        async with asyncio.timeout(60.0):
+            await admission._until(gone, served(), admission._Ending(never))
+
+    asyncio.run(ended())
+    assert taken.is_set()

@@ -2,6 +2,7 @@
 
 import pytest
 
+from fullpose_server.people import attempts as trying
 from fullpose_server.people.attempts import Attempts
 from fullpose_server.people.passwords import PasswordError, hashed, matches
 
@@ -69,3 +70,17 @@ def test_who_knows_the_password_may_have_mistyped_it() -> None:
         attempts.begin("ann", "a")
     attempts.succeeded("ann", "a")
     assert [attempts.begin("ann", "a") for _ in range(5)] == [0] * 5
+
+
+def test_a_network_of_one_subscriber_is_one_address() -> None:
+    attempts = Attempts()
+    assert [attempts.begin("ann", f"2001:db8::{k:x}") for k in range(5)] == [0] * 5
+    assert attempts.begin("ann", "2001:db8::ffff:1") > 0
+    assert attempts.begin("ann", "2001:db8:0:1::1") == 0
+
+
+def test_a_flood_of_names_is_kept_in_so_much_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(trying, "_NAMES", 3)
+    attempts = Attempts()
+    waits = [attempts.begin(f"name{k}", f"address{k}") for k in range(181)]
+    assert any(waits)

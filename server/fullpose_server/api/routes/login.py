@@ -41,9 +41,9 @@ async def login(
     if not services.people.admitted.people:
         raise ApiError(409, "no-people", NO_PEOPLE)
     address = address_of(request) or "nowhere"
-    _try(services, body.name, address)
-    row = await asyncio.to_thread(services.people.store.get, body.name)
-    async with services.hashing:
+    async with services.hashing:  # what is turned away here is not counted either, or a flood would fill the memory
+        _try(services, body.name, address)
+        row = await asyncio.to_thread(services.people.store.get, body.name)
         right, anew = await asyncio.to_thread(matches, body.password, None if row is None else row.password)
     if row is None or not right or row.disabled:
         audit_of_people(services, body.name, "login", address, refused="wrong name or password, or disabled")
