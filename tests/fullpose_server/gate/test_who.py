@@ -92,7 +92,7 @@ def test_a_gate_is_told_of_more_people_than_its_link_takes_at_once() -> None:
         tells: list[Callable[[Admitted], None]] = []
         services = SimpleNamespace(
             hosts=SimpleNamespace(running=running),
-            people=SimpleNamespace(admitted=Admitted(True, people[:9_000]), watch=tells.append),
+            people=SimpleNamespace(may_stop=Admitted(True, people[:9_000]), watch=tells.append),
             trail=None,
             front=FrontStatus(),
         )
