@@ -1,5 +1,6 @@
 """`fullpose user` and `fullpose token`, as a person types them, and what a server makes of it."""
 
+import json
 from pathlib import Path
 
 import httpx
@@ -43,6 +44,12 @@ def test_people_are_made_listed_and_shut_out(tmp_path: Path) -> None:
     token = typed("token", "create", "ann", "--label", "a script", "--role", "viewer", *there).stdout.strip()
     assert token.startswith("fp_")
     assert "a script" in typed("token", "list", *there).stdout
+    lines = [json.loads(line) for line in typed("audit", "list", *there).stdout.splitlines()]
+    assert [line["command"] for line in lines] == ["user add", "token create"]
+    assert {line["who"].partition(" (")[2] for line in lines} == {"command line)"}
+    assert token not in str(lines)
+    assert PASSWORD not in str(lines)
+    assert typed("audit", "verify", *there).returncode == 0
     assert token not in typed("token", "list", *there).stdout
 
 

@@ -1,6 +1,9 @@
 """The people of a data folder, for commands that change them: a server that runs on it sees that within a second."""
 
-from collections.abc import Iterator
+import os
+import pwd
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -9,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from fullpose_server.store.database import Database
     from fullpose_server.store.people import PeopleStore
 
 DataDir = Annotated[Path | None, typer.Option(help="The server's data folder (~/.local/share/fullpose).")]
@@ -18,16 +22,56 @@ UserName = Annotated[str, typer.Argument(metavar="NAME", help="Who: letters, dig
 @contextmanager
 def people_of(data_dir: Path | None, config: Path | None) -> Iterator["PeopleStore"]:
     """The people of a server's data folder, which is made where it is not there yet. Raises `ServerError`."""
+    with _database(data_dir, config) as database:
+        yield _store(database)
+
+
+@contextmanager
+def _database(data_dir: Path | None, config: Path | None) -> Iterator["Database"]:
     from fullpose_server.cli._configuration import configured
     from fullpose_server.store.database import Database
-    from fullpose_server.store.people import PeopleStore
 
     folder = configured(data_dir=data_dir, config=config).settings.data_dir
     database = Database(folder / "fullpose.db")
     try:
-        yield PeopleStore(database)
+        yield database
     finally:
         database.close()
+
+
+def _store(database: "Database") -> "PeopleStore":
+    from fullpose_server.store.people import PeopleStore
+
+    return PeopleStore(database)
+
+
+@contextmanager
+def changing_people(
+    data_dir: Path | None, config: Path | None
+) -> Iterator[tuple["PeopleStore", Callable[[str, str], None]]]:
+    """Likewise, to change them; and what writes a change, and about whom, into the audit: who has this terminal did it.
+
+    Raises `ServerError`.
+    """
+    from fullpose_server.store.audit import AuditLog
+    from fullpose_server.store.audit_entry import AuditEntry
+
+    with _database(data_dir, config) as database:
+        log, people = AuditLog(database), _store(database)
+
+        def audit(word: str, about: str) -> None:
+            states = ("", "")
+            log.write([AuditEntry(time.time(), _who(), "", word, {"about": about}, None, states, True, None)])
+
+        yield people, audit
+
+
+def _who() -> str:
+    """Of the system's users; no name of a person who signs in has a blank in it."""
+    try:
+        return f"{pwd.getpwuid(os.getuid()).pw_name} (command line)"
+    except KeyError:
+        return f"user {os.getuid()} (command line)"
 
 
 def day(moment: float | None) -> str:

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from fullpose_server.cli._arguments import Config
-from fullpose_server.cli._people import DataDir, UserName, day, people_of
+from fullpose_server.cli._people import DataDir, UserName, changing_people, day, people_of
 
 TokenId = Annotated[str, typer.Argument(metavar="ID", help="As `fullpose token list` tells it.")]
 
@@ -30,8 +30,9 @@ def create(
     """Make a token; the first line of stdout is the token and nothing else."""
     from fullpose_server.cli.user import role_of
 
-    with people_of(data_dir, config) as people:
+    with changing_people(data_dir, config) as (people, audit):
         given = people.make_token(name, label, None if role is None else role_of(role), days)
+        audit("token create", f"{given.id} of {name}: {label}")
     typer.echo(given.secret)
     typer.echo(f"its id is {given.id}; it is kept nowhere: programs show it as Authorization: Bearer ...", err=True)
 
@@ -48,6 +49,7 @@ def listed(data_dir: DataDir = None, config: Config = None) -> None:
 
 def revoke(token: TokenId, data_dir: DataDir = None, config: Config = None) -> None:
     """End a token."""
-    with people_of(data_dir, config) as people:
+    with changing_people(data_dir, config) as (people, audit):
         row = people.revoke(token)
+        audit("token revoke", f"{token} of {row.user}")
     typer.echo(f"{token} of {row.user} ({row.label}) is revoked")

@@ -8,7 +8,7 @@ import typer
 
 from fullpose_server.cli._arguments import Config
 from fullpose_server.cli._exit import fail
-from fullpose_server.cli._people import DataDir, UserName, day, people_of
+from fullpose_server.cli._people import DataDir, UserName, changing_people, day, people_of
 
 RoleName = Annotated[str, typer.Option("--role", help="viewer (sees), operator (commands) or admin (people too).")]
 FromStdin = Annotated[bool, typer.Option("--password-stdin", help="Read the password from standard input.")]
@@ -43,10 +43,11 @@ def add(
     if password_stdin and no_password:
         fail("--password-stdin and --no-password: expected one of them")
     known = role_of(role)
-    with people_of(data_dir, config) as people:
+    with changing_people(data_dir, config) as (people, audit):
         if people.get(name) is not None:
             fail(f"there is a user {name} already: expected another name")
         people.add(name, known, None if no_password else _password(password_stdin))
+        audit("user add", f"{name}: {known}")
     typer.echo(f"{name} is {known}")
 
 
@@ -66,8 +67,9 @@ def listed(data_dir: DataDir = None, config: Config = None) -> None:
 def role(name: UserName, role: RoleName, data_dir: DataDir = None, config: Config = None) -> None:
     """Give a person another role."""
     known = role_of(role)
-    with people_of(data_dir, config) as people:
+    with changing_people(data_dir, config) as (people, audit):
         row = people.change(name, role=known)
+        audit("user change", f"{name}: role {known}")
     typer.echo(f"{row.name} is {row.role}")
 
 
@@ -75,10 +77,11 @@ def password(
     name: UserName, password_stdin: FromStdin = False, data_dir: DataDir = None, config: Config = None
 ) -> None:
     """Set a person's password."""
-    with people_of(data_dir, config) as people:
+    with changing_people(data_dir, config) as (people, audit):
         if people.get(name) is None:
             fail(f"no user named {name!r}")
         people.set_password(name, _password(password_stdin))
+        audit("password", name)
     typer.echo(f"{name} has another password, and their sessions have ended")
 
 
@@ -93,8 +96,9 @@ def enable(name: UserName, data_dir: DataDir = None, config: Config = None) -> N
 
 
 def _let_in(name: str, *, disabled: bool, data_dir: Path | None, config: Path | None) -> None:
-    with people_of(data_dir, config) as people:
+    with changing_people(data_dir, config) as (people, audit):
         row = people.change(name, disabled=disabled)
+        audit("user change", f"{name}: {'disabled' if disabled else 'enabled'}")
     typer.echo(f"{row.name} is {'let in no longer' if disabled else 'let in'}")
 
 

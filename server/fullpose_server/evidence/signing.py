@@ -109,6 +109,9 @@ def _make(path: Path) -> None:
     try:
         with os.fdopen(descriptor, "wb") as file:
             file.write(pem)
+        if os.geteuid() == 0:  # made by root for a server of another user, which could not read it
+            owner = path.parent.stat()
+            os.chown(draft, owner.st_uid, owner.st_gid)
         durable.sync(draft)
         try:
             os.link(draft, path)

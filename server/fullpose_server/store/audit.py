@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Any
 
-from sqlalchemy import Integer, Select, String, select, type_coerce
+from sqlalchemy import Integer, Select, String, select, text, type_coerce
 from sqlalchemy.orm import Session
 
 from fullpose_server.store.audit_entry import AuditEntry
@@ -26,6 +26,8 @@ class AuditLog:
     def write(self, entries: Sequence[AuditEntry]) -> None:
         """Add lines, all or none."""
         with self._database.begin() as session:
+            if session.get_bind().dialect.name == "sqlite":  # so that no other program adds one between
+                session.execute(text("BEGIN IMMEDIATE"))
             number, previous = _newest(session)
             for entry in entries:
                 number += 1

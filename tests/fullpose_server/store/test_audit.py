@@ -4,6 +4,7 @@ import json
 import shutil
 import sqlite3
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -206,6 +207,20 @@ def test_two_writers_make_one_chain(copied: Path) -> None:
     for database in databases:
         database.close()
     assert found(copied).rows == ROWS + 6
+
+
+def test_writers_at_the_same_time_make_one_chain(copied: Path) -> None:
+    databases = [Database(copied, busy_s=60.0) for _ in range(3)]
+
+    def write(database: Database) -> None:
+        for number in range(10):
+            AuditLog(database).write([entry(number)])
+
+    with ThreadPoolExecutor(3) as pool:
+        list(pool.map(write, databases))
+    for database in databases:
+        database.close()
+    assert found(copied).rows == ROWS + 30
 
 
 def test_a_batch_that_cannot_be_written_leaves_nothing(copied: Path) -> None:
