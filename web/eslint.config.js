@@ -10,7 +10,7 @@ const LAYERS = ["contract", "net", "rules", "state", "ui", "features"];
 
 function below(layer, index) {
   const above = LAYERS.slice(index + 1);
-  const regexes = [`^(\\.\\./)+(${[...above, "App|main"].join("|")})(/|\\.|$)`];
+  const regexes = [`^(\\.\\./)+(${[...above, "App|Console|main"].join("|")})(/|\\.|$)`];
   // One page knows nothing of another.
   if (layer === "features") regexes.push("^\\.\\./(?!\\.\\./)");
   const message = "contract < net < rules < state < ui < features; no feature imports another";

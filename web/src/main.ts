@@ -5,8 +5,10 @@ import "./styles/controls.css";
 
 import { mount } from "svelte";
 import App from "./App.svelte";
-import { makeStores } from "./state/stores";
+import { makeLasting } from "./state/stores";
 
 const target = document.getElementById("app");
 if (!target) throw new Error("index.html has no #app");
-mount(App, { target, props: { stores: makeStores() } });
+const lasting = makeLasting();
+void lasting.identity.check();
+mount(App, { target, props: { lasting } });

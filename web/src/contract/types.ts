@@ -31,15 +31,19 @@ export type LeaseAction = Schemas["LeaseIn"]["action"];
 export type LeaseToken = Schemas["LeaseToken"];
 export type LimitName = Schemas["BlockingOut"]["limit"];
 export type LiveHealth = Schemas["LiveOut"];
+/** Whether one must sign in, and who one is. */
+export type Me = Schemas["MeOut"];
 export type Method = Schemas["MethodOut"];
 export type MethodFigures = Schemas["MethodFiguresOut"];
 export type Peak = Schemas["PeakOut"];
+export type Person = Schemas["PersonOut"];
 export type Plan = Schemas["PlanOut"];
 export type PlanMargin = Schemas["MarginOut"];
 export type PlanSamples = Schemas["PlanSamples"];
 export type Problem = Schemas["Problem"];
 export type RemedyKind = Schemas["RemedyIn"]["kind"];
 export type Rig = Schemas["RigOut"];
+export type Role = Person["role"];
 export type Run = Schemas["RunOut"];
 export type ScenePoseAt = Schemas["ScenePoseIn"];
 export type ScenePose = Schemas["ScenePoseOut"];
@@ -47,8 +51,14 @@ export type Severity = Schemas["Severity"];
 export type Shelf = Schemas["ShelfOut"];
 export type Snapshot = Schemas["SessionOut"];
 export type StateName = Schemas["State"];
+export type Token = Schemas["TokenOut"];
+export type TokenGiven = Schemas["TokenGiven"];
+export type TokenWanted = Schemas["TokenIn"];
 export type Trajectory = Schemas["TrajectoryOut"];
 export type TrajectoryPreview = Schemas["TrajectoryPreview"];
+export type User = Schemas["UserOut"];
+export type UserChange = Schemas["UserChange"];
+export type UserWanted = Schemas["UserIn"];
 
 // The stream's messages.
 export type RecordDescription = Schemas["Record"];

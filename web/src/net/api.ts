@@ -9,6 +9,9 @@ import type {
   LeaseToken,
   RemedyKind,
   ScenePoseAt,
+  TokenWanted,
+  UserChange,
+  UserWanted,
 } from "../contract/types";
 import { page, pathTo, request, socketTo } from "./request";
 import { upload } from "./upload";
@@ -17,10 +20,26 @@ import { upload } from "./upload";
 const STOP = { withinMs: 2000 };
 const COMMAND = { withinMs: 10_000 };
 const READ = { withinMs: 60_000 };
+/** To who we are: nothing is shown before the first answer. */
+const WHO = { withinMs: 5000 };
 /** To one that answers a secret, which is told once: it is waited for though the rig's process has to start before. */
 const GIVEN = { withinMs: 180_000 };
 
 export const api = {
+  /** Whether one must sign in here, and who one is. */
+  me: () => request("get", "/api/v1/me", {}, WHO),
+  login: (name: string, password: string) =>
+    request("post", "/api/v1/login", {}, { ...READ, body: { name, password } }),
+  logout: () => request("post", "/api/v1/logout", {}, COMMAND),
+  changePassword: (current: string, next: string) =>
+    request("put", "/api/v1/me/password", {}, { ...READ, body: { current, new: next } }),
+  tokens: () => request("get", "/api/v1/tokens", {}, READ),
+  makeToken: (body: TokenWanted) => request("post", "/api/v1/tokens", {}, { ...READ, body }),
+  revokeToken: (token: string) => request("delete", "/api/v1/tokens/{token}", { token }, READ),
+  users: () => request("get", "/api/v1/users", {}, READ),
+  addUser: (body: UserWanted) => request("post", "/api/v1/users", {}, { ...READ, body }),
+  changeUser: (name: string, body: UserChange) => request("put", "/api/v1/users/{name}", { name }, { ...READ, body }),
+
   health: () => request("get", "/api/v1/health", {}, READ),
   rigs: () => request("get", "/api/v1/rigs", {}, READ),
   methods: () => request("get", "/api/v1/methods", {}, READ),

@@ -9,6 +9,8 @@ export class ApiError extends Error {
     message: string,
     /** What is wrong with the request, where the server says so. */
     readonly errors: Problem["errors"] = [],
+    /** What the server calls it, the end of the problem's type: "sign-in", "role". */
+    readonly kind: string = "",
   ) {
     super(message);
   }
@@ -27,11 +29,16 @@ export function messageOf(error: unknown): string {
 export function refusal(status: number, body: string): ApiError {
   try {
     const problem = JSON.parse(body) as Partial<Problem> | null;
-    if (typeof problem?.detail === "string") return new ApiError(status, problem.detail, problem.errors ?? []);
+    if (typeof problem?.detail === "string") return problemOf(status, problem.detail, problem);
   } catch {
     // not JSON
   }
   return new ApiError(status, `The server answered ${status}`);
+}
+
+/** A problem document as an error. */
+export function problemOf(status: number, detail: string, { type, errors }: Partial<Problem>): ApiError {
+  return new ApiError(status, detail, errors ?? [], type?.split(":").at(-1) ?? "");
 }
 
 export function silence(): ApiError {

@@ -35,16 +35,22 @@ export const BROWSER: Surroundings = {
   clearTimeout: (id) => window.clearTimeout(id),
 };
 
+/** What the server closes one with whose session or token has ended (server: api/close_codes.py). */
+const UNKNOWN = 4401;
+
 export interface SocketListener {
   connecting?: () => void;
   opened?: () => void;
   received: (data: unknown) => void;
   lost: (reason: string) => void;
+  /** The server let it in no longer, or may have let it in never: a browser does not tell that from a network that fails. */
+  refused?: (() => void) | undefined;
 }
 
 export class KeptSocket {
   #socket: Socket | null = null;
   #attempt = 0;
+  #opened = false;
   #settled = false;
   #heardAt = 0;
   #closed = false;
@@ -87,12 +93,19 @@ export class KeptSocket {
     socket.binaryType = "arraybuffer";
     this.#socket = socket;
     this.#heardAt = this.around.now();
-    socket.onopen = () => this.listener.opened?.();
+    socket.onopen = () => {
+      this.#opened = true;
+      this.listener.opened?.();
+    };
     socket.onmessage = ({ data }) => {
       this.#heardAt = this.around.now();
       this.listener.received(data);
     };
-    socket.onclose = ({ code, reason }) => this.#lost(reason || `connection closed (${code})`);
+    socket.onclose = ({ code, reason }) => {
+      const refused = code === UNKNOWN || !this.#opened;
+      this.#lost(reason || `connection closed (${code})`);
+      if (refused) this.listener.refused?.();
+    };
     this.#watch();
   }
 
@@ -122,7 +135,7 @@ export class KeptSocket {
     this.#timers.clear();
     const socket = this.#socket;
     this.#socket = null;
-    this.#settled = false;
+    this.#opened = this.#settled = false;
     if (socket) {
       socket.onopen = socket.onmessage = socket.onclose = null;
       socket.close();

@@ -61,6 +61,35 @@ describe("the stop channel", () => {
     expect(trips.at(-1)).toBeNull();
   });
 
+  it("tells of a server that lets it in no longer, or never did, and of no other loss", () => {
+    let refused = 0;
+    channel = new StopChannel(
+      () => undefined,
+      world.around,
+      "ws://rig/api/v1/stop",
+      () => refused++,
+    );
+    opened();
+    world.socket.onclose?.({ code: 1006, reason: "" }); // the network
+    expect(refused).toBe(0);
+    world.pass(1000);
+    world.socket.onclose?.({ code: 1006, reason: "" }); // before it was open
+    expect(refused).toBe(1);
+    world.pass(2000);
+    opened();
+    world.socket.onclose?.({ code: 4401, reason: "this token or session has ended: sign in again" });
+    expect(refused).toBe(2);
+    channel.close();
+    expect(refused).toBe(2);
+  });
+
+  it("that is closed stays so", () => {
+    opened();
+    channel.close();
+    world.pass(60_000);
+    expect([world.sockets.length, world.timers, trips.at(-1)]).toEqual([1, 0, null]);
+  });
+
   it("comes back, also from a connection that died in silence", () => {
     opened();
     const dead = world.socket;

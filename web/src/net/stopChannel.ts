@@ -1,7 +1,7 @@
 /** The stop channel: one WebSocket for the stops of every rig, open from the page's first moment, its round trip known. */
 import type { sockets } from "../contract/schema";
 import type { CommandDone, Urgent } from "../contract/types";
-import { ApiError } from "./errors";
+import { problemOf, type ApiError } from "./errors";
 import { me } from "./identity";
 import { BROWSER, KeptSocket, type Surroundings } from "./keptSocket";
 import { socketTo } from "./request";
@@ -15,12 +15,14 @@ export const ANSWER_MS = 1000;
 /** What a press of Stop needs; null where the channel is not open, or did not answer: then it goes over HTTP. */
 export interface StopLine {
   press: (what: Urgent, rig: string) => Promise<CommandDone | null>;
+  close: () => void;
 }
 
-/** Opens a channel; it tells its round trip [ms], null while it is down. */
-export type OpenStopLine = (roundTrip: (ms: number | null) => void) => StopLine;
+/** Opens a channel; it tells its round trip [ms], null while it is down, and that it was not let in. */
+export type OpenStopLine = (roundTrip: (ms: number | null) => void, refused: () => void) => StopLine;
 
-export const openStopLine: OpenStopLine = (roundTrip) => new StopChannel(roundTrip);
+export const openStopLine: OpenStopLine = (roundTrip, refused) =>
+  new StopChannel(roundTrip, BROWSER, undefined, refused);
 
 interface Waiting {
   answer: (done: CommandDone | null) => void;
@@ -36,14 +38,21 @@ export class StopChannel implements StopLine {
     private readonly roundTrip: (ms: number | null) => void,
     private readonly around: Surroundings = BROWSER,
     url: string = socketTo("/api/v1/stop", {}),
+    refused: () => void = () => undefined,
   ) {
     const socket = {
       opened: () => this.#socket.settle(),
       received: (data: unknown) => this.#receive(data),
       lost: () => this.#lost(),
+      refused,
     };
     this.#socket = new KeptSocket(url, socket, around);
   }
+
+  close = (): void => {
+    this.#socket.close();
+    this.#lost();
+  };
 
   press = (what: Urgent, rig: string): Promise<CommandDone | null> => {
     if (!this.#socket.settled) return Promise.resolve(null);
@@ -79,7 +88,7 @@ export class StopChannel implements StopLine {
         this.#settle(message.id, message.done);
         break;
       case "problem":
-        this.#refuse(message.id, new ApiError(message.problem.status, message.problem.detail));
+        this.#refuse(message.id, problemOf(message.problem.status, message.problem.detail, message.problem));
         break;
       default:
         message satisfies never;

@@ -20,6 +20,8 @@ export interface Listener {
   /** A replay has been opened; what is sent to it now comes before the subscription. */
   replay?: (of: ReplayOf) => void;
   replayed?: (where: Replayed) => void;
+  /** The server may not have let us in. */
+  refused?: () => void;
 }
 
 /** What an opened stream is told. */
@@ -50,6 +52,7 @@ export class Stream {
         this.#layout = null;
         this.listener.link({ type: "closed", reason });
       },
+      refused: () => this.listener.refused?.(),
     };
     this.#socket = new KeptSocket(url, socket, around, helloMs);
   }

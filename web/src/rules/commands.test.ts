@@ -4,6 +4,7 @@ import type { CommandName } from "../contract/types";
 import { COMMANDS, nextStep, recoveryStep, shownCommands, verdict, type Circumstances } from "./commands";
 
 const ARMED: Circumstances = {
+  role: null,
   state: "armed",
   allowed: ["start", "move", "home", "disarm", "acknowledge", "load", "hold", "reset"],
   freshness: "fresh",
@@ -13,6 +14,7 @@ const ARMED: Circumstances = {
   busy: false,
 };
 const NOTHING: Circumstances = {
+  role: "viewer",
   state: null,
   allowed: [],
   freshness: "stale",
@@ -35,6 +37,15 @@ describe("a command", () => {
   it("needs the session to allow it", () => {
     expect(enabled("start", {})).toBe(true);
     expect(verdict("resume", ARMED)).toEqual({ enabled: false, why: "Not allowed while armed" });
+  });
+
+  it("needs an operator, where people sign in, before all else", () => {
+    expect(verdict("start", { ...ARMED, role: "viewer", state: null })).toEqual({
+      enabled: false,
+      why: "Your role is viewer",
+    });
+    expect(enabled("start", { role: "operator" })).toBe(true);
+    expect(enabled("start", { role: "admin" })).toBe(true);
   });
 
   it("needs the lease", () => {

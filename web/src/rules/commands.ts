@@ -1,6 +1,7 @@
 /** Which command may be given now, and why not. The server decides; this only spares the operator a refusal. */
-import type { CommandName, StateName } from "../contract/types";
+import type { CommandName, Role, StateName } from "../contract/types";
 import type { Freshness } from "./freshness";
+import { permitted } from "./roles";
 
 export interface CommandLook {
   name: CommandName;
@@ -32,6 +33,8 @@ export const COMMANDS: readonly CommandLook[] = [
 ];
 
 export interface Circumstances {
+  /** Of who is signed in; null where nobody need be. */
+  role: Role | null;
   state: StateName | null;
   allowed: readonly string[];
   freshness: Freshness;
@@ -55,6 +58,8 @@ const QUIET: ReadonlySet<CommandName> = new Set<CommandName>(["shelve", "unshelv
 /** Whether `command` may be given. Stop and E-stop always may: no lease, no fresh data, no link state is asked for. */
 export function verdict(command: CommandName, now: Circumstances): Verdict {
   if (command === "stop" || command === "estop") return { enabled: true };
+  const role = permitted("operator", now.role);
+  if (!role.enabled) return role;
   if (now.state === null) return no("No word from the rig yet");
   if (!now.allowed.includes(command)) return no(`Not allowed while ${now.state}`);
   const look = COMMANDS.find(({ name }) => name === command);

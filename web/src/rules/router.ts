@@ -1,6 +1,16 @@
-/** Paths of the pages: /operate/{rig}, /trajectories/{sha}, /plans/{id}, /compare/{id}, /runs/{id}, /alarms, /rigs. */
+/** Paths of the pages: /operate/{rig}, /trajectories/{sha}, /plans/{id}, /compare/{id}, /runs/{id}, and the others alone. */
 
-export const PAGES = ["operate", "trajectories", "plans", "compare", "runs", "alarms", "rigs"] as const;
+export const PAGES = [
+  "operate",
+  "trajectories",
+  "plans",
+  "compare",
+  "runs",
+  "alarms",
+  "rigs",
+  "people",
+  "account",
+] as const;
 export type Page = (typeof PAGES)[number];
 
 export interface Route {

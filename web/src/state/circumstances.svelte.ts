@@ -1,13 +1,15 @@
 /** What the command rules are asked about, gathered from the rig and the library. */
 import type { Circumstances } from "../rules/commands";
 import type { Library } from "./library.svelte";
+import type { Identity } from "./identity.svelte";
 import type { Operated } from "./rig.svelte";
 
 export class Gathered {
   readonly now: Circumstances;
 
-  constructor(operated: Operated, library: Library) {
+  constructor(operated: Operated, library: Library, identity: Identity) {
     this.now = $derived({
+      role: identity.role,
       state: operated.state,
       allowed: operated.session?.allowed ?? [],
       freshness: operated.freshness,

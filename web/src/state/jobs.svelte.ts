@@ -28,6 +28,7 @@ export class Jobs<J extends Job> implements Older {
   problem: string | null = $state(null);
 
   #polling = false;
+  #closed = false;
   #reads = 0;
   #added = 0;
 
@@ -86,6 +87,11 @@ export class Jobs<J extends Job> implements Older {
     void this.#poll();
   }
 
+  /** Follows nothing any more. */
+  close(): void {
+    this.#closed = true;
+  }
+
   #take(known: Page<J>): void {
     this.all = known.rows;
     this.next = known.next;
@@ -102,6 +108,7 @@ export class Jobs<J extends Job> implements Older {
     let misses = 0;
     while (this.all.some(unfinished)) {
       await this.wait(misses === 0 ? POLL_MS : backoffMs(misses, Math.random()));
+      if (this.#closed) break;
       let problem: string | null = null;
       for (const { id } of this.all.filter(unfinished)) {
         try {

@@ -1,18 +1,24 @@
 /**
  * The lease of the operated rig: whether this tab may command, and the token that each of its commands carries.
  *
- * Its secret, and that of a request which may be granted yet, are the tab's alone: a reload of the page keeps them.
+ * Its secret, and that of a request which may be granted yet, are the tab's alone: a reload of the page keeps them. A
+ * person may have two tabs: the name says whose the lease is, the secret which tab's.
  */
 import type { Lease, LeaseGiven, LeaseToken, Snapshot } from "../contract/types";
 import type { Api } from "../net/api";
 import { ApiError, messageOf } from "../net/errors";
-import { me } from "../net/identity";
 import type { Notices } from "./notices.svelte";
+
+/** A request for the lease: its secret is the lease's once it is granted to it, in an epoch after the one it was made in. */
+interface Request {
+  secret: string;
+  epoch: number;
+}
 
 /** What a tab keeps of one rig's lease. */
 interface Kept {
   token: LeaseToken | null;
-  asked: string | null;
+  asked: Request | null;
 }
 
 const NOTHING: Kept = { token: null, asked: null };
@@ -20,34 +26,42 @@ const NOTHING: Kept = { token: null, asked: null };
 export class RigLease {
   #rig: string | null = null;
   #token: LeaseToken | null = $state.raw(null);
-  /** The secret that is the lease's once it is granted to us. */
-  #asked: string | null = null;
+  #asked: Request | null = $state.raw(null);
+  /** Whether a request is being compared with what was granted. */
+  #comparing = false;
 
   /** Ours it is while we are its holder, in the epoch we were given. */
   readonly held: boolean;
+  /** Whether this tab has asked for it, and waits. */
+  readonly asking: boolean;
 
   constructor(
     private readonly api: Api,
     private readonly notices: Notices,
     private readonly session: () => Snapshot | null,
+    /** The name that the holder of the lease is known by, where it is ours. */
+    private readonly me: () => string,
   ) {
-    this.held = $derived(this.#token !== null && holds(this.session(), this.#token));
+    const lease = $derived(this.session()?.lease ?? null);
+    this.held = $derived(
+      this.#token !== null && lease !== null && lease.holder === this.me() && lease.epoch === this.#token.epoch,
+    );
+    this.asking = $derived(this.#asked !== null && lease !== null && lease.requested_by.includes(this.me()));
   }
 
   /** That of another rig, or of none. */
   of(rig: string | null): void {
     this.#rig = rig;
-    const kept = rig === null ? NOTHING : restored(rig);
+    const kept = rig === null ? NOTHING : restored(rig, this.me());
     this.#token = kept.token;
     this.#asked = kept.asked;
   }
 
   /** Takes in what the stream says of it: another operator may have granted what we asked for. */
   observe(lease: Lease): void {
-    if (this.#rig === null || this.#asked === null) return;
-    if (lease.holder === me() && lease.epoch !== this.#token?.epoch) {
-      this.#own(this.#rig, { ...lease, secret: this.#asked });
-    }
+    const [rig, asked] = [this.#rig, this.#asked];
+    if (rig === null || asked === null || lease.epoch === asked.epoch || lease.holder !== this.me()) return;
+    if (lease.epoch !== this.#token?.epoch) void this.#compare(rig, asked, lease);
   }
 
   /** The token of one more command; null where there is none. */
@@ -77,16 +91,31 @@ export class RigLease {
       this.#keep(rig, NOTHING);
     });
 
+  /** Gives up, before a person leaves, what this tab holds on every rig; what does not succeed falls silent by itself. */
+  async giveUp(): Promise<void> {
+    const given = keptByTab().map(async (rig) => {
+      const { token } = restored(rig, this.me());
+      this.#keep(rig, NOTHING);
+      if (token !== null) await this.api.lease(rig, "release", token.secret);
+    });
+    await Promise.allSettled(given);
+  }
+
   /** Hands it to the first of those who asked. */
   grant = (): Promise<void> => this.#with((rig) => this.api.lease(rig, "grant", this.#token?.secret));
 
   /** Says that we are still here. A network that is silent says so by itself. */
   async renew(): Promise<void> {
-    if (!this.held || this.#rig === null) return;
+    const [rig, token] = [this.#rig, this.#token];
+    if (!this.held || rig === null || token === null) return;
     try {
-      await this.api.lease(this.#rig, "renew", this.#token?.secret);
+      await this.api.lease(rig, "renew", token.secret);
     } catch (error) {
-      if (error instanceof ApiError && error.status !== 0) this.notices.say("problem", messageOf(error));
+      if (!(error instanceof ApiError) || error.status === 0) return;
+      this.notices.say("problem", messageOf(error));
+      // Not its secret: another tab's, or of a process that is gone. A command may have counted its token on meanwhile.
+      if (error.status === 403 && this.#token?.secret === token.secret)
+        this.#keep(rig, { token: null, asked: this.#asked });
     }
   }
 
@@ -106,11 +135,23 @@ export class RigLease {
     } catch {
       throw refused;
     }
-    this.#keep(rig, { token: this.#token, asked: given.secret ?? null });
-    this.notices.say(
-      "info",
-      `${this.session()?.lease.holder ?? "Another operator"} has control, and was asked for it.`,
-    );
+    this.#keep(rig, { token: this.#token, asked: given.secret ? { secret: given.secret, epoch: given.epoch } : null });
+    const holder = given.holder === this.me() ? "Another window of yours" : (given.holder ?? "Another operator");
+    this.notices.say("info", `${holder} has control, and was asked for it.`);
+  }
+
+  /** Whether it was granted to our request, or to another tab of ours: only the server can tell. */
+  async #compare(rig: string, asked: Request, lease: Lease): Promise<void> {
+    if (this.#comparing) return;
+    this.#comparing = true;
+    try {
+      const { epoch, sequence } = await this.api.lease(rig, "renew", asked.secret);
+      this.#own(rig, { ...lease, epoch, sequence, secret: asked.secret });
+    } catch (error) {
+      if (error instanceof ApiError && error.status !== 0) this.#keep(rig, { token: this.#token, asked: null });
+    } finally {
+      this.#comparing = false;
+    }
   }
 
   #own(rig: string, { epoch, sequence, secret }: LeaseGiven): void {
@@ -122,17 +163,20 @@ export class RigLease {
       this.#token = kept.token;
       this.#asked = kept.asked;
     }
-    sessionStorage.setItem(keyOf(rig), JSON.stringify(kept));
+    sessionStorage.setItem(keyOf(rig), JSON.stringify({ ...kept, who: this.me() }));
   }
 }
 
-function holds(session: Snapshot | null, token: LeaseToken): boolean {
-  return session !== null && session.lease.holder === me() && session.lease.epoch === token.epoch;
-}
+const KEY = "fullpose.held.";
+const keyOf = (rig: string): string => `${KEY}${rig}`;
 
-const keyOf = (rig: string): string => `fullpose.held.${rig}`;
+/** The rigs whose lease this tab has kept something of. */
+const keptByTab = (): string[] =>
+  Object.keys(sessionStorage).flatMap((key) => (key.startsWith(KEY) ? [key.slice(KEY.length)] : []));
 
-function restored(rig: string): Kept {
+/** What was kept under this name: another person's is none of ours. */
+function restored(rig: string, who: string): Kept {
   const text = sessionStorage.getItem(keyOf(rig));
-  return text === null ? NOTHING : (JSON.parse(text) as Kept);
+  const kept = text === null ? null : (JSON.parse(text) as Kept & { who?: string });
+  return kept?.who === who ? kept : NOTHING;
 }

@@ -24,6 +24,7 @@ export class Library {
   #problems: Readonly<Record<string, string>> = $state.raw({});
   readonly #reads: Record<string, number> = {};
   #retry = 0;
+  #closed = false;
   #misses = 0;
 
   /** Why what is shown may not be what the server has; null where all of it was read. */
@@ -68,8 +69,16 @@ export class Library {
     ]);
     this.#misses = this.problem === null ? 0 : this.#misses + 1;
     clearTimeout(this.#retry);
-    if (this.#misses > 0)
+    if (this.#misses > 0 && !this.#closed)
       this.#retry = window.setTimeout(() => void this.refresh(), backoffMs(this.#misses, Math.random()));
+  }
+
+  /** Asks for nothing more by itself. */
+  close(): void {
+    this.#closed = true;
+    clearTimeout(this.#retry);
+    this.planning.close();
+    this.comparisons.close();
   }
 
   refreshRigs = (): Promise<void> => this.#read("rigs", this.api.rigs, (rigs) => (this.rigs = rigs));

@@ -11,6 +11,7 @@ import type { TimeAxis } from "../rules/axis";
 import { dataAgeMs, freshness, looksStale, type Freshness } from "../rules/freshness";
 import type { Feed } from "./feed";
 import { RigLease } from "./lease.svelte";
+import type { Identity } from "./identity.svelte";
 import type { Notices } from "./notices.svelte";
 import { Stops } from "./stops.svelte";
 
@@ -54,8 +55,14 @@ export class Operated implements Feed {
     private readonly notices: Notices,
     private readonly connect: Connect,
     openStopLine: OpenStopLine,
+    identity: Pick<Identity, "me">,
   ) {
-    this.lease = new RigLease(api, notices, () => this.session);
+    this.lease = new RigLease(
+      api,
+      notices,
+      () => this.session,
+      () => identity.me,
+    );
     this.stops = new Stops(api, notices, () => this.name, openStopLine);
   }
 

@@ -31,7 +31,14 @@ export class Stops {
     private readonly operated: () => string | null,
     open: OpenStopLine,
   ) {
-    this.#line = open((ms) => (this.roundTripMs = ms));
+    this.#line = open(
+      (ms) => (this.roundTripMs = ms),
+      () => undefined,
+    );
+  }
+
+  close(): void {
+    this.#line.close();
   }
 
   stop = (): Promise<void> => this.#press("stop", this.operated());

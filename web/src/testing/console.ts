@@ -5,7 +5,7 @@ import type { CommandDone, Snapshot } from "../contract/types";
 import { api, type Api } from "../net/api";
 import type { OpenStopLine } from "../net/stopChannel";
 import type { Connect, Listener } from "../net/stream";
-import { makeStores, type Stores } from "../state/stores";
+import { makeLasting, makeStores, type Stores } from "../state/stores";
 import Within from "./Within.svelte";
 
 export class TestConsole {
@@ -38,6 +38,7 @@ export class TestConsole {
     const line: OpenStopLine = (roundTrip) => {
       this.#roundTrip = roundTrip;
       return {
+        close: () => undefined,
         press: (what, rig) => {
           if (!this.channel) return Promise.resolve(null);
           this.asked.push([`channel ${what}`, rig]);
@@ -45,7 +46,7 @@ export class TestConsole {
         },
       };
     };
-    this.stores = makeStores(server, connect, line);
+    this.stores = makeStores(makeLasting(server), server, connect, line);
   }
 
   /** Operates a rig whose session is this; fresh data is there. */

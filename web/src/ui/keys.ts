@@ -1,7 +1,7 @@
 /** A key press of the page as the rules speak of it. */
 import type { Key } from "../rules/keys";
 
-const TEXT = "textarea, [contenteditable], input:is(:not([type]), [type='text'], [type='search'])";
+const TEXT = "textarea, [contenteditable], input:is(:not([type]), [type='text'], [type='search'], [type='password'])";
 /** A slider is none: Space does nothing to it. */
 const CONTROL = "button, a, select, summary, input:not([type='range'])";
 

@@ -8,6 +8,7 @@ import { TestConsole } from "../../testing/console";
 import { alarm, givenLease, leaseOf, ourLease, RIG, session } from "../../testing/wire";
 import AlarmsPanel from "./AlarmsPanel.svelte";
 import CommandBar from "./CommandBar.svelte";
+import FlightPanel from "./FlightPanel.svelte";
 
 beforeEach(() => sessionStorage.clear());
 
@@ -98,14 +99,33 @@ describe("the command bar", () => {
 
 describe("control", () => {
   it("is asked for where another has it, and taken over only when a person says so", async () => {
-    const console = new TestConsole({ lease: new ApiError(409, "held by another") });
-    console.operate(session({ lease: leaseOf("another", { requested_by: [ourLease().holder ?? ""] }) }));
+    const held = new ApiError(409, "held by another");
+    const asked = givenLease(leaseOf("another"), "asked");
+    const console = new TestConsole({ lease: (action: string) => (action === "request" ? asked : held) });
+    console.operate(session({ lease: leaseOf("another") }));
     console.show(CommandBar, {});
-    await fireEvent.click(screen.getByRole("button", { name: "Take over…" }));
-    expect(console.asked).toEqual([]);
+    await fireEvent.click(screen.getByRole("button", { name: "Ask for control" }));
+    console.tell(session({ lease: leaseOf("another", { requested_by: [ourLease().holder ?? ""] }) }));
+    await fireEvent.click(await screen.findByRole("button", { name: "Take over…" }));
+    expect(console.asked.map(([, , action]) => action)).toEqual(["take", "request"]);
     await fireEvent.click(within(screen.getByRole("dialog")).getByRole("button", { name: "Take over" }));
-    expect(console.asked).toEqual([["lease", "bench", "takeover"]]);
+    expect(console.asked.at(-1)).toEqual(["lease", "bench", "takeover"]);
   });
+});
+
+it("a viewer sees what is there, and what a role forbids says so; nothing is asked of the server for it", async () => {
+  const console = new TestConsole().operate(session({ alarms: [alarm()] }));
+  const person = { name: "vic", role: "viewer", via: "session", until: null } as const;
+  console.stores.identity.take({ people: true, provider: null, person });
+  console.show(CommandBar, {});
+  console.show(AlarmsPanel, {});
+  console.show(FlightPanel, {});
+  expect(enabled()).toEqual([]);
+  const refused = [/^Take control/, "Acknowledge all", "Plan"].map((name) => screen.getByRole("button", { name }));
+  expect([command("start"), ...refused].map(({ title }) => title)).toEqual(Array(4).fill("Your role is viewer"));
+  expect(screen.getByLabelText<HTMLInputElement>("Flight file").disabled).toBe(true);
+  await fireEvent.click(command("start"));
+  expect(console.asked).toEqual([]);
 });
 
 describe("alarms", () => {

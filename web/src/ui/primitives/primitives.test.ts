@@ -128,7 +128,7 @@ describe("a question", () => {
     const said: string[] = [];
     render(Confirm, question(said));
     await fireEvent.click(button("Delete"));
-    expect(said).toEqual(["closed", "confirmed"]);
+    expect(said).toEqual(["confirmed", "closed"]);
   });
 });
 
