@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from tests.support.repository import ROOT
 
 FLIGHTS = ROOT / "examples" / "flights"
 FLIGHT = FLIGHTS / "loop.csv"
+FULLPOSE = (sys.executable, "-c", "from fullpose_server.cli import main; main()")
 PATIENT_MS = 120_000  # a page, a click or a picture on a machine that does much else
 TROUBLED = "troubled"  # a rig that is left E-stopped: no other test's
 DESK: ViewportSize = {"width": 1440, "height": 900}
@@ -91,23 +93,11 @@ class Stock:
     comparison: dict[str, Any]
 
 
-@pytest.fixture(scope="session")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """`fullpose serve` on a free port with an empty data folder, and its rigs stopped at the end."""
-    data = tmp_path_factory.mktemp("data")
-    (data / "rigs").mkdir()
-    (data / "rigs" / f"{TROUBLED}.toml").write_text(f'name = "{TROUBLED}"\ngeometry = "vertical-4"\n', encoding="utf-8")
+@contextmanager
+def serving(data: Path) -> Iterator[Server]:
+    """`fullpose serve` on a free port with this data folder; its rigs are stopped at the end."""
     log = (data / "server.log").open("w")
-    command = [
-        sys.executable,
-        "-c",
-        "from fullpose_server.cli import main; main()",
-        "serve",
-        "--port",
-        "0",
-        "--data-dir",
-        str(data),
-    ]
+    command = [*FULLPOSE, "serve", "--port", "0", "--data-dir", str(data)]
     # The machine of the tests may starve a live source: bridged longer than on a quiet one.
     patient = {"FULLPOSE_LIVE_DELAY_MS": "20", "FULLPOSE_LIVE_EXTRAPOLATE_MS": "1000"}
     process = subprocess.Popen(
@@ -125,6 +115,16 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         assert process.stdout is not None
         process.stdout.close()
         log.close()
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server with an empty data folder, where nobody need sign in."""
+    data = tmp_path_factory.mktemp("data")
+    (data / "rigs").mkdir()
+    (data / "rigs" / f"{TROUBLED}.toml").write_text(f'name = "{TROUBLED}"\ngeometry = "vertical-4"\n', encoding="utf-8")
+    with serving(data) as running:
+        yield running
 
 
 @pytest.fixture(scope="session")

@@ -72,13 +72,13 @@ export const api = {
     const body = { command, args, lease } as CommandBody;
     return request("post", "/api/v1/rigs/{rig}/commands", { rig }, { ...COMMAND, body });
   },
-  /** `secret`: the lease's, for what only its holder may do. */
-  lease: (rig: string, action: LeaseAction, secret?: string) =>
+  /** `secret`: the lease's, for what only its holder may do; `reason`: why it is taken over. */
+  lease: (rig: string, action: LeaseAction, secret?: string, reason: string | null = null) =>
     request(
       "post",
       "/api/v1/rigs/{rig}/lease",
       { rig },
-      { ...(secret === undefined ? GIVEN : COMMAND), body: { action, secret: secret ?? null } },
+      { ...(secret === undefined ? GIVEN : COMMAND), body: { action, secret: secret ?? null, reason } },
     ),
   stop: (rig: string) => request("post", "/api/v1/rigs/{rig}/stop", { rig }, STOP),
   estop: (rig: string) => request("post", "/api/v1/rigs/{rig}/estop", { rig }, STOP),

@@ -9,7 +9,7 @@ export const ROLES: readonly Role[] = ["viewer", "operator", "admin"];
 export const MEANING: Record<Role, string> = {
   viewer: "sees everything, and stops a rig",
   operator: "uploads, plans and commands",
-  admin: "and people",
+  admin: "an operator, and says who else may use this server",
 };
 
 /** Whether a role is enough for what needs `needed`. Null: nobody signs in here, and nothing is refused. */

@@ -82,8 +82,9 @@ export class RigLease {
       }
     });
 
-  /** Takes it from who holds it; the audit log says so. */
-  takeOver = (): Promise<void> => this.#with(async (rig) => this.#own(rig, await this.api.lease(rig, "takeover")));
+  /** Takes it from who holds it; the audit log says so, and why. */
+  takeOver = (reason: string | null): Promise<void> =>
+    this.#with(async (rig) => this.#own(rig, await this.api.lease(rig, "takeover", undefined, reason)));
 
   release = (): Promise<void> =>
     this.#with(async (rig) => {

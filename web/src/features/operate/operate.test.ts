@@ -108,8 +108,10 @@ describe("control", () => {
     console.tell(session({ lease: leaseOf("another", { requested_by: [ourLease().holder ?? ""] }) }));
     await fireEvent.click(await screen.findByRole("button", { name: "Take over…" }));
     expect(console.asked.map(([, , action]) => action)).toEqual(["take", "request"]);
-    await fireEvent.click(within(screen.getByRole("dialog")).getByRole("button", { name: "Take over" }));
-    expect(console.asked.at(-1)).toEqual(["lease", "bench", "takeover"]);
+    const dialog = within(screen.getByRole("dialog"));
+    await fireEvent.input(dialog.getByLabelText("Reason"), { target: { value: " the shift is over " } });
+    await fireEvent.click(dialog.getByRole("button", { name: "Take over" }));
+    expect(console.asked.at(-1)).toEqual(["lease", "bench", "takeover", undefined, "the shift is over"]);
   });
 });
 
