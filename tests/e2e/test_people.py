@@ -3,6 +3,7 @@
 import re
 import subprocess
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import get_args
 
@@ -38,11 +39,13 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         yield running
 
 
-def api_of(server: Server, name: str) -> httpx.Client:
+@contextmanager
+def api_of(server: Server, name: str) -> Iterator[httpx.Client]:
     """The API, as who has signed in there."""
-    client = httpx.Client(base_url=f"{server.url}/api/v1", headers={"Origin": server.url}, timeout=PATIENT_MS / 1000.0)
-    client.post("/login", json={"name": name, "password": PASSWORD}).raise_for_status()
-    return client
+    origin = {"Origin": server.url}
+    with httpx.Client(base_url=f"{server.url}/api/v1", headers=origin, timeout=PATIENT_MS / 1000.0) as client:
+        client.post("/login", json={"name": name, "password": PASSWORD}).raise_for_status()
+        yield client
 
 
 def sign_in(page: Page, name: str, password: str = PASSWORD) -> None:
@@ -117,11 +120,12 @@ def test_a_viewer_sees_and_stops_and_commands_nothing(pages: Pages, server: Serv
         lease = ola.post(f"/rigs/{RIG}/lease", json={"action": "take"}).raise_for_status().json()
         shown = {"epoch": lease["epoch"], "sequence": 1, "secret": lease["secret"]}
         ola.post(f"/rigs/{RIG}/commands", json={"command": "connect", "lease": shown}).raise_for_status()
+        ola.post(f"/rigs/{RIG}/lease", json={"action": "release", "secret": lease["secret"]}).raise_for_status()
     viewer = Console(signed_in(pages, "vic", f"/operate/{RIG}"), RIG)
     viewer.expect_state("idle")
-    ask = viewer.page.get_by_role("button", name="Ask for control")
-    expect(ask).to_have_attribute("title", "Your role is viewer")
-    for button in (ask, viewer.button("load"), viewer.page.get_by_role("button", name="Plan", exact=True)):
+    take = viewer.page.get_by_role("button", name="Take control")
+    expect(take).to_have_attribute("title", "Your role is viewer")
+    for button in (take, viewer.button("load"), viewer.page.get_by_role("button", name="Plan", exact=True)):
         expect(button).to_be_disabled()
     expect(viewer.page.get_by_label("Flight file")).to_be_disabled()
     seen(viewer.page, shots, "viewer")
