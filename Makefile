@@ -1,4 +1,4 @@
-.PHONY: demo quick test format clean
+.PHONY: demo quick test test-containers format clean
 # Everything a fresh machine needs: python3 and make.
 
 demo: ## installs, serves, a real flight is flying; the address is printed once it answers
@@ -11,6 +11,9 @@ quick: ## the gates that take a minute: format, lint, imports, types, the consol
 test: ## installs what the tests need and runs every gate
 	@tools/setup dev
 	@tools/gates $(GATES)
+
+test-containers: ## as root: builds the image with podman, and runs it, its proxy and Prometheus in real containers
+	@tools/containers
 
 format: ## puts the sources in order
 	@.venv/bin/ruff format . && .venv/bin/ruff check --fix .

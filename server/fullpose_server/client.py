@@ -1,7 +1,9 @@
 """A client of the API: what a program does from outside, the demo included. Degrees and seconds, as on the wire."""
 
 import asyncio
+import base64
 import json
+import ssl
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -46,17 +48,37 @@ class _Lease:
 
 
 class Client:
-    """One server, one operator. Use `async with`; raises `ClientError` from every call."""
+    """One server, one operator. Use `async with`; raises `ClientError` from every call.
 
-    def __init__(self, url: str, name: str = "python", timeout_s: float = 30.0, token: str | None = None) -> None:
-        """`token`: of a server with users (`fullpose token create`); its person is who commands then."""
-        self.url = url.rstrip("/")
+    A proxy's name and password may be in the address, `https://name:password@host`; they are in no message.
+    `token`: of a server with users (`fullpose token create`); its person is who commands then.
+    `tls`: whom an https server is to be known by; by default the system's authorities (or those of SSL_CERT_FILE).
+    """
+
+    def __init__(
+        self,
+        url: str,
+        name: str = "python",
+        timeout_s: float = 30.0,
+        token: str | None = None,
+        tls: ssl.SSLContext | None = None,
+    ) -> None:
+        address = httpx.URL(url)
+        self.url = str(address.copy_with(userinfo=b"")).rstrip("/")
         self.name = name
+        self._headers = {"X-Fullpose-Client": name} | _authorization(address)
         self._leases: dict[str, _Lease] = {}  # by rig: each rig has epochs of its own
         self._live_keys: dict[str, str] = {}  # of the live sources that were loaded last, by rig
-        self._headers = {"X-Fullpose-Client": name} | ({} if token is None else {"Authorization": f"Bearer {token}"})
+        if token is not None:
+            self._headers["Authorization"] = f"Bearer {token}"
+        tls = tls or ssl.create_default_context()
+        self._tls = tls if self.url.startswith("https:") else None  # of the WebSockets, which have none without it
         self._http = httpx.AsyncClient(
-            base_url=self.url + API, headers=self._headers, timeout=timeout_s, trust_env=False
+            base_url=self.url + API,
+            headers=self._headers,
+            timeout=timeout_s,
+            trust_env=False,
+            verify=tls,
         )
 
     async def __aenter__(self) -> Self:
@@ -197,7 +219,9 @@ class Client:
         """The rig's stream, subscribed; the first message is the server's hello."""
         url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/stream"
         try:
-            async with connect(url, proxy=None, max_size=None, additional_headers=self._headers) as socket:
+            async with connect(
+                url, proxy=None, additional_headers=self._headers, max_size=None, ssl=self._tls
+            ) as socket:
                 await socket.send(json.dumps({"type": "subscribe"} | subscription))
                 yield socket
         except (ConnectionClosed, InvalidHandshake, OSError) as error:
@@ -217,7 +241,9 @@ class Client:
             message.setdefault("key", self._live_keys.get(rig))
         url = f"ws{self.url.removeprefix('http')}{API}/rigs/{quote(rig)}/live"
         try:
-            async with connect(url, proxy=None, additional_headers=self._headers, compression=None) as socket:
+            async with connect(
+                url, proxy=None, additional_headers=self._headers, compression=None, ssl=self._tls
+            ) as socket:
                 await socket.send(json.dumps(message))
                 opened = json.loads(await socket.recv())
                 if opened["type"] != "opened":
@@ -265,3 +291,11 @@ class Client:
         except ValueError:
             problem = {}
         raise ClientError(problem.get("detail") or response.reason_phrase, response.status_code, problem)
+
+
+def _authorization(address: httpx.URL) -> dict[str, str]:
+    """The header for what the address names; by hand, for WebSockets take it from an address undecoded."""
+    if not address.userinfo:
+        return {}
+    credentials = f"{address.username}:{address.password}".encode()
+    return {"Authorization": f"Basic {base64.b64encode(credentials).decode()}"}

@@ -1,6 +1,7 @@
 """The client's side of the lease, against a server that is made up: two rigs, each with epochs of its own."""
 
 import asyncio
+import base64
 import json
 from typing import Any
 
@@ -75,3 +76,20 @@ def test_the_lease_is_kept_and_given_up_under_its_secret(
     under = [{"action": word} | secret for word in ("renew", "renew", "grant", "release")]
     assert asked == [{"action": "take"}, *under]
     assert shown == [("one", None)]
+
+
+def test_a_password_in_the_address_is_sent_decoded_and_told_to_nobody() -> None:
+    """A WebSocket's library sends it as it is written, percent signs and all."""
+
+    async def refused() -> tuple[Client, str]:
+        async with Client("http://ann:a%20%C3%A4@127.0.0.1:1/") as client:
+            with pytest.raises(ClientError) as error:
+                async with client.stream("one"):
+                    pass
+            return client, str(error.value)
+
+    client, message = asyncio.run(refused())
+    assert client.url == "http://127.0.0.1:1"
+    assert "ann" not in message
+    credentials = base64.b64decode(client._headers["Authorization"].removeprefix("Basic "))
+    assert credentials.decode() == "ann:a ä"

@@ -54,11 +54,11 @@ def _jobs(services: Services) -> Iterator[Metric]:
         ("comparisons", services.comparisons.status, services.comparisons.pending),
     )
     busy = GaugeMetricFamily("fullpose_jobs_busy", "Whether one is in work", labels=["kind"])
-    stopped = GaugeMetricFamily("fullpose_jobs_stopped", "Whether none are made any more", labels=["kind"])
+    stopped = GaugeMetricFamily("fullpose_jobs_stopped", "Whether none are made", labels=["kind"])
     pending = GaugeMetricFamily("fullpose_jobs_pending", "That wait or are in work", labels=["kind"])
     for kind, status, jobs in runners:
         busy.add_metric([kind], float(status is RunnerStatus.BUSY))
-        stopped.add_metric([kind], float(status is RunnerStatus.STOPPED))
+        stopped.add_metric([kind], float(status in (RunnerStatus.STOPPED, RunnerStatus.RESTARTING)))
         pending.add_metric([kind], float(jobs.total))
     yield from (busy, stopped, pending)
 

@@ -12,6 +12,7 @@ from typing import Annotated
 
 import typer
 
+from fullpose_server.cli._arguments import Config
 from fullpose_server.cli._exit import BAD_INPUT, DONE
 
 PRIORITY = 60
@@ -35,12 +36,14 @@ def register(app: typer.Typer) -> None:
 
 def doctor(
     data_dir: Annotated[Path | None, typer.Option(help="Where the server keeps its data.")] = None,
-    port: Annotated[int, typer.Option(help="The port to be used.")] = 8642,
+    port: Annotated[int | None, typer.Option(help="The port to be used (8642).")] = None,
+    config: Config = None,
 ) -> None:
-    """Print one line a check. Exit 2 where something is wrong."""
-    from fullpose_server.settings import default_data_dir
+    """Print one line a check, for a server with the settings as they are. Exit 2 where something is wrong."""
+    from fullpose_server.cli._configuration import configured
 
-    findings = [found for check in checks(data_dir or default_data_dir(), port) for found in check()]
+    settings = configured(port=port, data_dir=data_dir, config=config).settings
+    findings = [found for check in checks(settings.data_dir, settings.port) for found in check()]
     for found in findings:
         typer.echo(f"{found.level:<6}{found.topic:<12}{found.text}")
     raise typer.Exit(BAD_INPUT if any(found.level == "wrong" for found in findings) else DONE)
@@ -68,25 +71,31 @@ def _python() -> Iterator[Finding]:
 
 
 def _scheduling() -> Iterator[Finding]:
+    from fullpose_server.runtime.loop.scheduling_rights import CAP_SYS_NICE, own_rights, why_refused
+
+    rights = own_rights()
     try:
         before = os.sched_getscheduler(0)
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
         os.sched_setscheduler(0, before, os.sched_param(0))
     except OSError as error:
-        how = f"give CAP_SYS_NICE (compose: cap_add: [SYS_NICE]) or ulimit -r {PRIORITY}"
+        why = why_refused(rights, PRIORITY)
         yield Finding(
-            "note", "real time", f"SCHED_FIFO refused ({error.strerror}); a loop will be late at times: {how}"
+            "note", "real time", f"SCHED_FIFO refused ({error.strerror}); a loop will be late at times: {why}"
         )
     else:
-        yield Finding("ok", "real time", f"SCHED_FIFO {PRIORITY} is allowed")
+        by = "CAP_SYS_NICE" if rights.may(CAP_SYS_NICE) else f"RLIMIT_RTPRIO {rights.rtprio}"
+        yield Finding("ok", "real time", f"SCHED_FIFO {PRIORITY} is allowed, by {by}")
 
 
 def _locked_memory() -> Iterator[Finding]:
+    from fullpose_server.runtime.loop.scheduling_rights import CAP_IPC_LOCK, own_rights
+
     soft, _ = resource.getrlimit(resource.RLIMIT_MEMLOCK)
-    if soft == resource.RLIM_INFINITY or soft > 1 << 30 or os.geteuid() == 0:
+    if soft == resource.RLIM_INFINITY or soft > 1 << 30 or own_rights().may(CAP_IPC_LOCK):
         yield Finding("ok", "memory", "memory may be locked")
     else:
-        how = "give CAP_IPC_LOCK (compose: cap_add: [IPC_LOCK], ulimits: memlock: -1) or ulimit -l unlimited"
+        how = "give ulimit -l unlimited (compose: ulimits, memlock: -1), or root CAP_IPC_LOCK"
         yield Finding("note", "memory", f"only {soft // 1024} kB may be locked; paging can make a loop late: {how}")
 
 
@@ -162,5 +171,5 @@ def _kernels() -> Iterator[Finding]:
             "wrong", "solver", f"the identity is solved with a matrix error of {solution.matrix_error[0]:.1e}"
         )
         return
-    slow = "" if took < 3.0 else "; if it is so at every start, Numba's cache beside the package cannot be written"
+    slow = "" if took < 3.0 else "; if it is so at every start, Numba's cache cannot be written"
     yield Finding("ok" if took < 3.0 else "note", "solver", f"ready after {took:.1f} s{slow}")

@@ -16,12 +16,14 @@ from fullpose_server.store.jobs import JobStatus
 
 log = logging.getLogger(__name__)
 Result = TypeVar("Result")
+_REPLACED = 3  # times that a worker which ends by itself is, before a job comes; then the job must need it
 
 
 class RunnerStatus(StrEnum):
     """What a runner does."""
 
     STARTING = "starting"
+    RESTARTING = "restarting"  # its process has ended by itself; jobs wait for the next one
     IDLE = "idle"
     BUSY = "busy"
     STOPPED = "stopped"
@@ -77,6 +79,7 @@ class Runner:
         self._running: _Running | None = None
         self._worker = WorkerProcess(program or (sys.executable, "-m", "fullpose_server.planning.worker"))
         self._task: asyncio.Task[None] | None = None
+        self._to_begin = True  # the worker: not begun yet, or killed by us
 
     @property
     def status(self) -> RunnerStatus:
@@ -85,7 +88,9 @@ class Runner:
             return RunnerStatus.STOPPED
         if self._running is not None:
             return RunnerStatus.BUSY
-        return RunnerStatus.IDLE if self._worker.ready or not self._prewarm else RunnerStatus.STARTING
+        if self._worker.ready or not self._prewarm:
+            return RunnerStatus.IDLE
+        return RunnerStatus.STARTING if self._to_begin else RunnerStatus.RESTARTING
 
     @property
     def worker_pid(self) -> int | None:
@@ -111,7 +116,7 @@ class Runner:
         if running is None or running.job.id != job:
             return False
         if not running.answered:  # the worker has it: what is answered already is done, and stays so
-            running.cancelled = True
+            running.cancelled = self._to_begin = True
             await self._worker.kill()
         await running.written.wait()
         return running.cancelled
@@ -125,10 +130,7 @@ class Runner:
 
     async def _run(self) -> None:
         while True:
-            if self._prewarm and not self._worker.ready:
-                with contextlib.suppress(OSError):  # said again, by every job that needs it
-                    await self._worker.start()
-            job = await self._waiting.get()
+            job = await self._next()
             running = self._running = _Running(job)
             try:
                 await self._write(job, await self._outcome(running))
@@ -142,6 +144,27 @@ class Runner:
                 running.written.set()
             if not self._prewarm:
                 await self._worker.kill()
+
+    async def _next(self) -> Job:
+        """The next job. Until it comes a prewarmed worker is there: one that ends is replaced."""
+        waiting = asyncio.ensure_future(self._waiting.get())
+        try:
+            for _ in range(1 + _REPLACED if self._prewarm else 0):
+                if not self._worker.ready:
+                    with contextlib.suppress(OSError):  # said again, by every job that needs it
+                        await self._worker.start()
+                if not self._worker.ready:
+                    break
+                self._to_begin = False
+                ended = asyncio.ensure_future(self._worker.ended())
+                await asyncio.wait((waiting, ended), return_when=asyncio.FIRST_COMPLETED)
+                if waiting.done():
+                    ended.cancel()
+                    break
+                log.error("%s: its process ended %s while it waited; another is started", self._name, ended.result())
+            return await waiting
+        finally:
+            waiting.cancel()
 
     async def _outcome(self, running: _Running) -> Outcome | None:
         job = running.job
@@ -171,6 +194,7 @@ class Runner:
                 return failed(
                     "worker", f"the process that makes it did not start: {refusal}; the server's log says why"
                 )
+            self._to_begin = False
         async for answer in self._worker.ask(json.dumps(message)):
             match answer:
                 case {"progress": [str(phase), int(done), int(total)]}:

@@ -1,6 +1,8 @@
 """The runner with real processes: whatever one job comes to, its end is told and the next one runs."""
 
 import asyncio
+import os
+import signal
 import sys
 import threading
 from collections.abc import Awaitable, Callable, Mapping
@@ -10,6 +12,7 @@ from fullpose_server.errors import TransitionError
 from fullpose_server.planning.job import Kind, Outcome
 from fullpose_server.planning.runner import Runner, RunnerStatus
 from fullpose_server.store.jobs import JobStatus
+from tests.support.waiting import soon
 
 # A worker that is told what to do: answer, go on for ever, or die.
 PROGRAM = """
@@ -126,6 +129,43 @@ def test_an_end_that_cannot_be_written_does_not_end_the_runner() -> None:
         assert runner.status is not RunnerStatus.STOPPED
 
     run(work)
+
+
+async def ready(runner: Runner) -> int:
+    """The worker's process, once it is there to be asked."""
+    while runner.status is not RunnerStatus.IDLE or runner.worker_pid is None:  # noqa: ASYNC110 - it tells nobody
+        await asyncio.sleep(0)
+    return runner.worker_pid
+
+
+def test_a_worker_that_dies_while_it_waits_is_told_and_replaced() -> None:
+    """The planner was `starting` for good then, until a plan was asked for."""
+
+    async def work(runner: Runner) -> None:
+        first = await ready(runner)
+        os.kill(first, signal.SIGKILL)
+        while runner.status is RunnerStatus.IDLE:  # noqa: ASYNC110 - it tells nobody
+            await asyncio.sleep(0)
+        assert runner.status is RunnerStatus.RESTARTING
+        assert await ready(runner) != first
+        after = Made("after")
+        runner.submit(after)
+        await after.ended.wait()
+        assert after.outcomes[0].status is JobStatus.DONE
+
+    run(work)
+
+
+def test_one_that_dies_again_and_again_is_left_to_the_next_job() -> None:
+    async def work(runner: Runner) -> None:
+        await soon(lambda: runner.status is RunnerStatus.RESTARTING)
+        after = Made("after")
+        runner.submit(after)
+        await after.ended.wait()
+        assert after.outcomes[0].status is JobStatus.FAILED
+        assert runner.status is not RunnerStatus.STOPPED
+
+    run(work, (sys.executable, "-c", 'import json; print(json.dumps({"ready": True}), flush=True)'))
 
 
 def test_a_worker_that_dies_fails_its_job_and_is_replaced() -> None:

@@ -1033,6 +1033,11 @@ export interface components {
          */
         AliveOut: {
             /**
+             * Dead
+             * @description What of the server's own processes does not live; `status` may be degraded for other reasons too
+             */
+            dead: ("planner" | "rig" | "recorder")[];
+            /**
              * Status
              * @enum {string}
              */
@@ -2824,7 +2829,7 @@ export interface components {
          * @description What a runner does.
          * @enum {string}
          */
-        RunnerStatus: "starting" | "idle" | "busy" | "stopped";
+        RunnerStatus: "starting" | "restarting" | "idle" | "busy" | "stopped";
         /**
          * RunOut
          * @description A recorded run; errors are those of the flight itself, running or held, leads left out.

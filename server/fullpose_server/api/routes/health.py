@@ -3,6 +3,7 @@
 import asyncio
 import platform
 import time
+from typing import Literal
 
 from fastapi import APIRouter, Request, Response
 
@@ -43,7 +44,7 @@ async def health(services: ServicesDep) -> HealthOut:
 async def alive(services: ServicesDep) -> AliveOut:
     """Whether the server answers, and does well: for who looks after it from outside, and need not sign in."""
     wrong = _wrong(services) + await asyncio.to_thread(_stored, services)
-    return AliveOut(status="degraded" if wrong else "ok")
+    return AliveOut(status="degraded" if wrong else "ok", dead=_dead(services))
 
 
 @router.get("/version")
@@ -66,10 +67,25 @@ def _stored(services: Services) -> list[str]:
     return found + services.disk.findings() + services.quarantine.findings() + services.upkeep.findings()
 
 
+def _dead(services: Services) -> list[Literal["planner", "rig", "recorder"]]:
+    """Kinds of processes of which one does not live; which one is for those who sign in."""
+    rigs = [host.snapshot().health for host in services.hosts.all()]
+    found: list[Literal["planner", "rig", "recorder"]] = []
+    if services.queue.status in ("stopped", "restarting"):
+        found.append("planner")
+    if not all(rig.rig_alive for rig in rigs):
+        found.append("rig")
+    if not all(rig.recorder.alive for rig in rigs if rig.rig_alive):
+        found.append("recorder")
+    return found
+
+
 def _wrong(services: Services) -> list[str]:
     found = []
     if services.queue.status == "stopped":
         found.append("the planner has stopped")
+    if services.queue.status == "restarting":
+        found.append("the planner's process has ended: another is started, plans wait for it")
     if services.comparisons.status == "stopped":
         found.append("comparisons are made no more")
     found += services.trail.faults() + services.alarm_trail.faults() + services.alarm_watch.faults()
@@ -78,6 +94,8 @@ def _wrong(services: Services) -> list[str]:
         state = host.snapshot().health
         if not state.rig_alive:
             found.append(f"rig {host.name}: its process does not answer")
+        elif not state.recorder.alive:
+            found.append(f"rig {host.name}: its recorder does not answer; where it ended, it is replaced at rest")
         found += [f"rig {host.name}: {fault}" for fault in host.faults()]
         if state.recorder.error:
             found.append(f"rig {host.name}: recorder: {state.recorder.error}")

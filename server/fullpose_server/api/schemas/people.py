@@ -95,3 +95,6 @@ class AliveOut(Wire):
     """The server answers; how it does is in /health, for those who are signed in."""
 
     status: Literal["ok", "degraded"]
+    dead: list[Literal["planner", "rig", "recorder"]] = Field(
+        description="What of the server's own processes does not live; `status` may be degraded for other reasons too"
+    )

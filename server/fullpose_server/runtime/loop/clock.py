@@ -11,6 +11,8 @@ import os
 import time
 from typing import Protocol
 
+from fullpose_server.runtime.loop.scheduling_rights import own_rights, why_refused
+
 _MCL_CURRENT, _MCL_FUTURE = 1, 2
 
 
@@ -24,7 +26,7 @@ def go_realtime(priority: int | None, cpu: int | None) -> str:
         # Children (there should be none) must not inherit it.
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(priority))
     except (PermissionError, OSError) as refusal:
-        return f"off: SCHED_FIFO refused ({refusal.strerror}); give CAP_SYS_NICE, or ulimit -r {priority}"
+        return f"off: SCHED_FIFO refused ({refusal.strerror}): {why_refused(own_rights(), priority)}"
     libc = ctypes.CDLL(ctypes.util.find_library("c"), use_errno=True)
     if libc.mlockall(_MCL_CURRENT | _MCL_FUTURE) != 0:
         why = os.strerror(ctypes.get_errno())
