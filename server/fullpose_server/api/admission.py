@@ -15,10 +15,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from fullpose_server.api.access import needed
 from fullpose_server.api.close_codes import FORBIDDEN, UNKNOWN
-from fullpose_server.api.origin import SAFE
+from fullpose_server.api.origin import SAFE, is_stop
 from fullpose_server.api.people import People
 from fullpose_server.api.problems import ApiError, problem_response
-from fullpose_server.people.admitted import Credential, shown_by
+from fullpose_server.people.admitted import STOPS_AFTER_S, Credential, shown_by
 from fullpose_server.people.roles import Role
 
 _END_S = 2.0  # for a WebSocket's own end
@@ -58,7 +58,7 @@ def admit(people: People, scope: Scope) -> Credential | None:
         return None
     headers = Headers(scope=scope)
     shown = shown_by(headers.get("authorization"), headers.get("cookie"))
-    person = people.admitted.find(shown, time.time())
+    person = people.admitted.find(shown, time.time() - (STOPS_AFTER_S if is_stop(scope) else 0.0))
     role = needed(scope)
     if role is None:
         return person

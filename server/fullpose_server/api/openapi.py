@@ -134,5 +134,6 @@ def _problems(responses: dict[str, Any]) -> None:
     body = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
     for status, response in responses.items():
         if status.startswith(("4", "5")):
-            response["content"] = body
+            if "text/html" not in response.get("content", ()):  # a page for a browser that was sent here
+                response["content"] = body
     responses["default"] = {"description": "Any error, as a problem document", "content": body}

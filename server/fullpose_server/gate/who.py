@@ -7,7 +7,7 @@ import time
 
 from fullpose_server.api.problems import ApiError
 from fullpose_server.gate.messages import LetIn
-from fullpose_server.people.admitted import Admitted, Credential, shown_by
+from fullpose_server.people.admitted import STOPS_AFTER_S, Admitted, Credential, shown_by
 
 
 class Who:
@@ -28,7 +28,7 @@ class Who:
         """Who asks; None: nobody known, and nobody need be. Raises `ApiError`."""
         if self._admitted is None or not self._admitted.people:
             return None
-        found = self._admitted.find(shown_by(authorization, cookie), time.time())
+        found = self._admitted.find(shown_by(authorization, cookie), time.time() - STOPS_AFTER_S)
         if found is None:
             raise ApiError(401, "sign-in", "a stop is for those who are signed in: sign in, or show a token")
         return found

@@ -15,6 +15,9 @@ from fullpose_server.people.roles import Role
 
 COOKIE = "fullpose_session"
 TOKEN_PREFIX = "fp_"  # so that a token that was left in a file is known for one
+# So long after a session or token has run out it still stops a rig: its person stands beside it, and a clock that is
+# set forward runs out everybody's. One that was revoked does not.
+STOPS_AFTER_S = 86400.0
 _BEARER = "bearer "
 _LONGEST = 512
 

@@ -6,6 +6,7 @@ import os
 import signal
 import socket
 import subprocess
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -122,6 +123,21 @@ def test_a_gate_is_told_of_more_people_than_its_link_takes_at_once() -> None:
 def who_knows(who: Who) -> list[Credential]:
     """All that it was told."""
     return [] if who._admitted is None else who._admitted.all()
+
+
+def test_what_has_run_out_stops_for_a_day_and_what_was_revoked_does_not() -> None:
+    now = time.time()
+    ages = {"new": -60.0, "hour": 3600.0, "week": 7 * 86400.0}
+    people = [
+        Credential(name, proof_of(name), name, Role.VIEWER, now - age, session=False) for name, age in ages.items()
+    ]
+    who = Who()
+    for part in messages.let_in(Admitted(True, people)):
+        who.take(part)
+    assert [let_in(who, name) for name in ("new", "hour")] == ["new", "hour"]
+    for name in ("week", "revoked"):
+        with pytest.raises(ApiError):
+            let_in(who, name)
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 
 import asyncio
 import html
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Cookie, Header, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
@@ -19,7 +19,15 @@ from fullpose_server.store.people import PersonError
 PATH = "/login/provider"
 COOKIE = "fullpose_leaving"
 _ONLY_TEXT = "default-src 'none'; style-src 'unsafe-inline'"
-router = APIRouter(prefix=PATH, tags=["people"])
+_HTML: dict[str, Any] = {"content": {"text/html": {}}}  # it is a browser that is told
+NONE: dict[int | str, dict[str, Any]] = {404: {"description": "No provider is set"}}
+REFUSED: dict[int | str, dict[str, Any]] = {
+    401: {"description": "The provider did not sign them in, or this was not begun here"} | _HTML,
+    403: {"description": "Nobody that may sign in here"} | _HTML,
+    409: {"description": "Their name is another person's here"} | _HTML,
+    502: {"description": "The provider does not answer, or its answer does not hold"} | _HTML,
+}
+router = APIRouter(prefix=PATH, tags=["people"], responses=NONE)
 _PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="color-scheme" content="dark light">
 <title>Fullpose: not signed in</title>
 <body style="font:16px/1.5 system-ui;max-width:36em;margin:4em auto;padding:0 1em">
@@ -27,7 +35,12 @@ _PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="colo
 """
 
 
-@router.get("", status_code=303, response_class=RedirectResponse)
+@router.get(
+    "",
+    status_code=303,
+    response_class=RedirectResponse,
+    responses={502: {"description": "The provider does not answer"}},
+)
 async def leave(request: Request, services: ServicesDep) -> Response:
     """Send a browser to the provider."""
     leaving = await _provider(services).leave(_back(request))
@@ -45,7 +58,7 @@ async def leave(request: Request, services: ServicesDep) -> Response:
     return response
 
 
-@router.get("/answer", status_code=303, response_class=RedirectResponse)
+@router.get("/answer", status_code=303, response_class=RedirectResponse, responses=REFUSED)
 async def arrive(
     request: Request,
     services: ServicesDep,
@@ -53,8 +66,9 @@ async def arrive(
     user_agent: Annotated[str, Header(include_in_schema=False)] = "",
 ) -> Response:
     """A browser that the provider sent back: signed in, and at the console."""
+    provider = _provider(services)
     try:
-        arrived = await _provider(services).arrive(fullpose_leaving, dict(request.query_params))
+        arrived = await provider.arrive(fullpose_leaving, dict(request.query_params))
         if not is_name(arrived.name):
             told = f"{arrived.name[:80]!r} cannot be a name here: expected up to 64 letters, digits or . @ : + - _"
             raise ApiError(403, "name", told)
