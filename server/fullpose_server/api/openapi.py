@@ -133,7 +133,7 @@ def _sockets(routes: Iterable[BaseRoute], prefix: str) -> dict[str, Any]:
 def _problems(responses: dict[str, Any]) -> None:
     body = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
     for status, response in responses.items():
-        if status.startswith(("4", "5")):
-            if "text/html" not in response.get("content", ()):  # a page for a browser that was sent here
-                response["content"] = body
+        page = "text/html" in response.get("content", ())  # for a browser that was sent here
+        if status.startswith(("4", "5")) and not page:
+            response["content"] = body
     responses["default"] = {"description": "Any error, as a problem document", "content": body}

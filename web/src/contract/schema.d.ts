@@ -4694,15 +4694,6 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description The provider did not sign them in, or this was not begun here */
-            401: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
             /** @description A foreign page, a foreign name of this server, or a role that is not enough */
             403: {
                 headers: {
@@ -4721,16 +4712,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Their name is another person's here */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The provider does not answer, or its answer does not hold */
+            /** @description The provider does not answer */
             502: {
                 headers: {
                     [name: string]: unknown;
@@ -4781,16 +4763,16 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "text/html": unknown;
                 };
             };
-            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            /** @description Nobody that may sign in here */
             403: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "text/html": unknown;
                 };
             };
             /** @description No provider is set */
@@ -4808,7 +4790,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "text/html": unknown;
                 };
             };
             /** @description Validation Error */
@@ -4826,7 +4808,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/problem+json": components["schemas"]["Problem"];
+                    "text/html": unknown;
                 };
             };
             /** @description The database or a process that it takes does not answer */
