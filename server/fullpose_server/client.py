@@ -74,11 +74,7 @@ class Client:
         tls = tls or ssl.create_default_context()
         self._tls = tls if self.url.startswith("https:") else None  # of the WebSockets, which have none without it
         self._http = httpx.AsyncClient(
-            base_url=self.url + API,
-            headers=self._headers,
-            timeout=timeout_s,
-            trust_env=False,
-            verify=tls,
+            base_url=self.url + API, headers=self._headers, timeout=timeout_s, trust_env=False, verify=tls
         )
 
     async def __aenter__(self) -> Self:

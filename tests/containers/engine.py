@@ -19,6 +19,7 @@ from tests.support.waiting import until
 PODMAN = ("podman", "--runtime", "runc")
 PEERS = "localhost/fullpose-peers:test"
 PORT = 8642
+PASSWORD = "correct horse battery"  # of both the-admin and the-viewer
 UID = 10001  # of the image's user
 PYTHON = "/opt/fullpose/bin/python"
 # Ends a process of the container, found by a word of its command line, with all the rights its own user has.
@@ -36,9 +37,11 @@ for folder in pathlib.Path("/proc").glob("[0-9]*"):
 """
 
 
-def podman(*command: str, check: bool = True, timeout_s: float = 300.0) -> str:
-    """What podman says on stdout. Raises `AssertionError` with what it says on stderr."""
-    done = subprocess.run([*PODMAN, *command], capture_output=True, text=True, check=False, timeout=timeout_s)
+def podman(*command: str, check: bool = True, timeout_s: float = 300.0, given: str = "") -> str:
+    """What podman says on stdout. Raises `AssertionError` with what it says on stderr. `given`: its standard input."""
+    done = subprocess.run(
+        [*PODMAN, *command], input=given, capture_output=True, text=True, check=False, timeout=timeout_s
+    )
     assert done.returncode == 0 or not check, f"podman {' '.join(command)}: {done.stderr or done.stdout}"
     return done.stdout.strip()
 
@@ -46,10 +49,11 @@ def podman(*command: str, check: bool = True, timeout_s: float = 300.0) -> str:
 class Box:
     """One container, by its name."""
 
-    def __init__(self, name: str, address: str, token: str = "") -> None:
+    def __init__(self, name: str, address: str, tokens: dict[str, str] | None = None) -> None:
         self.name = name
-        self.token = token
-        self.headers = {"Authorization": f"Bearer {token}"}
+        self.tokens = tokens or {}  # by role
+        self.token = self.tokens.get("admin", "")
+        self.headers = {"Authorization": f"Bearer {self.token}"}
         self.address = address
         self.url = f"http://{address}:{PORT}"
 
@@ -124,10 +128,12 @@ class Engine:
         self._volumes += made.values()
         return made
 
-    def start(self, image: str, *options: str, command: tuple[str, ...] = (), token: str = "") -> Box:
+    def start(
+        self, image: str, *options: str, command: tuple[str, ...] = (), tokens: dict[str, str] | None = None
+    ) -> Box:
         """A container with an address of its own."""
         self._next += 1
-        box = Box(f"{self._prefix}-{self._next}", f"{self._net}.{self._next}", token)
+        box = Box(f"{self._prefix}-{self._next}", f"{self._net}.{self._next}", tokens)
         self._boxes.append(box.name)
         network = ("--network", self._prefix, "--ip", box.address)
         podman("run", "--detach", "--name", box.name, *network, *options, image, *command)
@@ -142,10 +148,13 @@ class Engine:
         if rig:
             write_rig(volumes["data"], rig)
         options = arguments("fullpose", volumes, capabilities=capabilities)
-        once = ("run", "--rm", "--network", "none", *options, self.image)
-        podman(*once, "user", "add", "ann", "--role", "admin", "--no-password")
-        token = podman(*once, "token", "create", "ann").splitlines()[0]
-        box = self.start(self.image, *options, token=token)
+        once = ("run", "--rm", "--interactive", "--network", "none", *options, self.image)
+        tokens = {}
+        for role in ("admin", "viewer"):
+            added = (*once, "user", "add", f"the-{role}", "--role", role, "--password-stdin")
+            podman(*added, given=f"{PASSWORD}\n")
+            tokens[role] = podman(*once, "token", "create", f"the-{role}").splitlines()[0]
+        box = self.start(self.image, *options, tokens=tokens)
         try:
             yield box
         finally:

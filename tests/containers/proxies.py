@@ -18,7 +18,7 @@ class Proxy:
 
     port: int
     root: str
-    token: str
+    tokens: dict[str, str]
 
     @property
     def tls(self) -> ssl.SSLContext:
@@ -30,9 +30,10 @@ class Proxy:
         """Of the site."""
         return f"https://localhost:{self.port}"
 
-    def client(self) -> Client:
-        """By TLS, with the token of a person."""
-        return Client(self.url, timeout_s=120.0, token=self.token, tls=self.tls)
+    def client(self, role: str | None = "admin") -> Client:
+        """By TLS, with the token of a person of that role; None: a stranger."""
+        token = None if role is None else self.tokens[role]
+        return Client(self.url, timeout_s=120.0, token=token, tls=self.tls)
 
 
 def proxied(engine: Engine, server: Box, which: str) -> Proxy:
@@ -46,4 +47,4 @@ def proxied(engine: Engine, server: Box, which: str) -> Proxy:
     command = (CADDY[which], "run", "--config", "/etc/caddy/Caddyfile", "--adapter", "caddyfile")
     box = engine.start(PEERS, *options, command=command)
     root = until(lambda: box.run("cat", ROOT_CERTIFICATE).stdout, every_s=0.2)
-    return Proxy(int(podman("port", box.name, "443").rsplit(":", 1)[1]), root, server.token)
+    return Proxy(int(podman("port", box.name, "443").rsplit(":", 1)[1]), root, server.tokens)

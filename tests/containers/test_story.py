@@ -1,6 +1,7 @@
 """The whole story through the proxy with TLS: upload, plan, fly, stream; server and container killed in flight."""
 
 import asyncio
+from collections.abc import Awaitable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -11,7 +12,7 @@ import pytest
 
 from fullpose_server.client import Client, ClientError
 from fullpose_server.runtime.recording.mcap_reader import is_complete, read_samples
-from tests.containers.engine import Box, Engine, podman
+from tests.containers.engine import PASSWORD, Box, Engine, podman
 from tests.containers.flights import FILE, RIG, VERTICAL, flown, streamed
 from tests.containers.proxies import CADDY, Proxy, proxied
 from tests.fullpose_server.runtime.rigs import within_limits
@@ -31,10 +32,49 @@ async def back(client: Client) -> dict[str, Any]:
     return await answered(asked)
 
 
+async def refused(asked: Awaitable[Any]) -> int | None:
+    """The status that a request is refused with."""
+    with pytest.raises(ClientError) as refusal:
+        await asked
+    return refusal.value.status
+
+
+async def strangers_and_viewers(proxy: Proxy) -> None:
+    """Whoever is not signed in does nothing; a viewer commands nothing."""
+    async with proxy.client(None) as stranger, proxy.client("viewer") as viewer:
+        for asked in (stranger.rigs(), stranger.take_lease(RIG), stranger.stop(RIG), stranger.estop(RIG)):
+            assert await refused(asked) == 401
+        with pytest.raises(ClientError):
+            async with stranger.stream(RIG, topics=["session"]) as socket:
+                await socket.recv()
+        assert await refused(viewer.take_lease(RIG)) == 403
+        assert await refused(viewer.command(RIG, "disarm")) == 403
+        assert await refused(viewer.plan("0" * 64, RIG)) == 403
+        assert (await viewer.session(RIG))["state"] == "running"
+        await viewer.stop("vertical-3")  # of another rig: anybody signed in may
+
+
+def signed_in(proxy: Proxy) -> None:
+    """By name and password, through TLS: the cookie is for TLS alone, and ends with the session."""
+    page = {"Origin": proxy.url}
+    with httpx.Client(base_url=f"{proxy.url}/api/v1", verify=proxy.tls, timeout=120.0, headers=page) as browser:
+        wrong = browser.post("/login", json={"name": "the-viewer", "password": "not the password"})
+        assert wrong.status_code == 401
+        right = browser.post("/login", json={"name": "the-viewer", "password": PASSWORD})
+        cookie = right.raise_for_status().headers["set-cookie"]
+        assert all(word in cookie for word in ("Secure", "HttpOnly", "SameSite=strict"))
+        assert browser.get("/rigs").is_success
+        assert browser.post(f"/rigs/{RIG}/lease").status_code == 403
+        assert browser.post("/logout").status_code == 204
+        assert browser.get("/rigs").status_code == 401
+
+
 def record(proxy: Proxy, run: str, folder: Path) -> Path:
     """A run's record, exported through the proxy."""
     path = folder / f"{run}.mcap"
-    with httpx.Client(verify=proxy.tls, timeout=120.0, headers={"Authorization": f"Bearer {proxy.token}"}) as http:
+    with httpx.Client(
+        verify=proxy.tls, timeout=120.0, headers={"Authorization": f"Bearer {proxy.tokens['admin']}"}
+    ) as http:
         answer = http.get(f"{proxy.url}/api/v1/runs/{run}/export", params={"format": "mcap"})
     path.write_bytes(answer.raise_for_status().content)
     return path
@@ -76,18 +116,20 @@ def test_a_server_killed_in_flight_is_back_and_has_its_rig_and_a_killed_containe
                 plan = await flown(client, tmp_path)
                 frames = await streamed(client, 20)
                 assert all(np.diff([frame["seq"] for frame in frames]) > 0)
+                await strangers_and_viewers(proxy)
                 before = await client.session(RIG)
                 await asyncio.to_thread(box.kill, "fullpose serve")
                 session = await back(client)
                 assert session["health"]["rig_pid"] == before["health"]["rig_pid"]  # the very process
                 assert session["run_id"] == before["run_id"], (session["state"], session["alarms"])
-                await client.take_lease(RIG, "takeover")
+                await client.take_lease(RIG, "takeover", "the server was killed")
                 if session["state"] == "held":
                     await client.command(RIG, "resume")
                 ended = await client.wait_state(RIG, "armed", "faulted", "estopped")
                 assert ended["state"] == "armed", ended["alarms"]
                 return plan, before["run_id"]
 
+        signed_in(proxy)
         plan, run = asyncio.run(fly())
         assert "started anew, and adopts the rigs" in box.logs()
         whole = record(proxy, run, tmp_path)
@@ -98,7 +140,7 @@ def test_a_server_killed_in_flight_is_back_and_has_its_rig_and_a_killed_containe
 
         async def again() -> str:
             async with proxy.client() as client:
-                await client.take_lease(RIG, "takeover")
+                await client.take_lease(RIG, "takeover", "the server was killed")
                 await client.command(RIG, "start")
                 begun = await client.wait_state(RIG, "running", "faulted")
                 assert begun["state"] == "running", begun["alarms"]
