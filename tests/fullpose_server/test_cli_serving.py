@@ -32,7 +32,8 @@ def test_demo_prints_the_address_and_flies_a_real_flight(tmp_path: Path) -> None
         assert (plan["method"], plan["flyable"]) == ("plan", True)
         log = httpx.get(f"{url}/api/v1/audit").json()
         commands = [line["command"] for line in reversed(log)]
-        assert commands == ["lease take", "connect", "load", "arm", "start"]
+        made = ["POST /trajectories", "POST /plans"]
+        assert commands == [*made, "lease take", "connect", "load", "arm", "start"]
         assert {line["who"] for line in log} == {"demo"}
         rig = httpx.get(f"{url}/api/v1/health").json()["rigs"]["vertical-4"]["rig_pid"]
         process.send_signal(signal.SIGTERM)
