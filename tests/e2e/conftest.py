@@ -14,7 +14,7 @@ from typing import Any
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, expect, sync_playwright
 
 from tests.support.repository import ROOT
 
@@ -22,6 +22,7 @@ FLIGHTS = ROOT / "examples" / "flights"
 FLIGHT = FLIGHTS / "loop.csv"
 FULLPOSE = (sys.executable, "-c", "from fullpose_server.cli import main; main()")
 PATIENT_MS = 120_000  # a page, a click or a picture on a machine that does much else
+expect.set_options(timeout=PATIENT_MS)
 TROUBLED = "troubled"  # a rig that is left E-stopped: no other test's
 DESK: ViewportSize = {"width": 1440, "height": 900}
 TABLET: ViewportSize = {"width": 1024, "height": 768}
@@ -100,6 +101,7 @@ def serving(data: Path) -> Iterator[Server]:
     command = [*FULLPOSE, "serve", "--port", "0", "--data-dir", str(data)]
     # The machine of the tests may starve a live source: bridged longer than on a quiet one.
     patient = {"FULLPOSE_LIVE_DELAY_MS": "20", "FULLPOSE_LIVE_EXTRAPOLATE_MS": "1000"}
+    patient["FULLPOSE_RIG_RATE_HZ"] = "250"  # each loop of 1 kHz takes a sixth of a core, and five come to be connected
     process = subprocess.Popen(
         command, cwd=ROOT, stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **patient}
     )

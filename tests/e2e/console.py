@@ -49,6 +49,11 @@ class Console:
         self.page.get_by_label("Convention of the file").select_option(convention)
         self.page.get_by_label("Flight file").set_input_files(file)
 
+    def chosen(self, flight: str) -> None:
+        """Wait until it is this flight that would be planned: an upload takes a moment."""
+        checked = self.page.get_by_label("Flight", exact=True).locator("option:checked")
+        expect(checked).to_contain_text(flight, timeout=SOON_MS)
+
     def solve(self, method: str) -> None:
         """Plan the chosen flight and wait until it can be flown."""
         self.page.get_by_label("Method", exact=True).select_option(method)
@@ -61,6 +66,7 @@ class Console:
         self.take_control()
         self.give("connect", "idle")
         self.upload(file, convention)
+        self.chosen(file.stem)
         self.solve(method)
         self.give("load", "ready")
         self.give("arm", "armed")

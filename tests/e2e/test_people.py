@@ -18,7 +18,9 @@ from tests.support.repository import ROOT
 
 pytestmark = pytest.mark.browser
 
-RIG = "vertical-4"
+RIG = "hall"
+# A page in the background of a starved machine is long silent, and others could take what it holds.
+HALL = f'name = "{RIG}"\ngeometry = "vertical-4"\n[silence.owner]\nhold_s = 300.0\nstop_s = 400.0\ndisarm_s = 500.0\n'
 PHONE: ViewportSize = {"width": 360, "height": 740}
 PASSWORD = "a sentence that nobody guesses"
 PEOPLE = {"ola": "operator", "vic": "viewer", "eve": "operator"}
@@ -31,6 +33,8 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     data = tmp_path_factory.mktemp("people")
     add = [*FULLPOSE, "user", "add", "ada", "--role", "admin", "--password-stdin", "--data-dir", str(data)]
     subprocess.run(add, cwd=ROOT, input=f"{PASSWORD}\n", text=True, check=True, capture_output=True)
+    (data / "rigs").mkdir()
+    (data / "rigs" / f"{RIG}.toml").write_text(HALL, encoding="utf-8")
     with serving(data) as running:
         with api_of(running, "ada") as ada:
             for name, role in PEOPLE.items():
