@@ -105,6 +105,8 @@ def test_a_file_that_falls_beside_does_not_take_the_console_away(page: Page) -> 
     stored = page.request.get("/api/v1/trajectories").json()
     page.goto("/runs")
     expect(page.get_by_role("heading", name="Runs")).to_be_visible(timeout=SOON_MS)
+    # What is said goes when a rig is chosen, and the first one is chosen once the server has told which there are.
+    expect(page.get_by_role("combobox", name="Rig")).not_to_have_value("")
     assert page.evaluate(DROP, "h1") == [True, True]
     expect(page.get_by_role("alert").filter(has_text="Nothing was taken")).to_be_visible()
     # A page that takes flights takes it wherever it falls: this one is no flight, and is refused in words.
