@@ -16,7 +16,8 @@ from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan,
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.messages import Reply
 from fullpose_server.runtime.supervisor.rig_client import RigHost
-from fullpose_server.session.lease import LeaseAction, LeaseToken, proof_of
+from fullpose_server.secret import proof_of
+from fullpose_server.session.lease import LeaseAction, LeaseToken
 
 SWING = np.radians([40.0, 50.0, 35.0, 45.0])
 HERTZ = np.array([0.2, 0.17, 0.25, 0.3])

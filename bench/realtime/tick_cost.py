@@ -28,7 +28,8 @@ from fullpose_server.runtime.loop.clock import MadeUpClock, seconds
 from fullpose_server.runtime.loop.control_loop import ControlLoop
 from fullpose_server.runtime.loop.leisure import Leisure
 from fullpose_server.runtime.loop.process import assemble
-from fullpose_server.session.lease import LeaseToken, proof_of
+from fullpose_server.secret import proof_of
+from fullpose_server.session.lease import LeaseToken
 from fullpose_server.session.states import State
 
 RIG = "vertical-4"

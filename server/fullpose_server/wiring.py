@@ -49,6 +49,7 @@ from fullpose_server.store.people import PeopleStore
 from fullpose_server.store.people_known import had_people
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.quarantine import Quarantine
+from fullpose_server.store.readonly import DATABASE
 from fullpose_server.store.trajectories import TrajectoryStore
 
 log = logging.getLogger(__name__)
@@ -78,7 +79,7 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         folder = settings.data_dir.resolve()
         stack.callback(os.close, await asyncio.to_thread(_lock, folder))
         quarantine = Quarantine(folder / "quarantine")
-        database = await asyncio.to_thread(_opened, folder / "fullpose.db", quarantine)
+        database = await asyncio.to_thread(_opened, folder / DATABASE, quarantine)
         stack.callback(database.close)
         served = await asyncio.to_thread(_build, settings, folder, database, scenes, quarantine)
         services = served.services
@@ -113,7 +114,7 @@ def _opened(path: Path, quarantine: Quarantine) -> Database:
 
 def _had_people(quarantine: Quarantine) -> bool:
     """Whether a database that was moved aside, now or at an earlier start, had people: they are not nobody since."""
-    had = any(had_people(file) for file in quarantine.folder.glob("*-database-*/fullpose.db"))
+    had = any(had_people(file) for file in quarantine.folder.glob(f"*-database-*/{DATABASE}"))
     if had:
         log.warning("a damaged database had users: where no others are known, nobody is let in but to stop a rig")
     return had

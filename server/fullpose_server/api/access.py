@@ -20,7 +20,7 @@ _ADMIN = (f"{API}/users",)
 # What changes nothing but the person's own: it needs a person, of whatever role.
 _OWN = frozenset({f"{API}/logout", f"{API}/me/password", f"{API}/tokens", f"{API}/solve"})
 _OWN_BELOW = (f"{API}/tokens/",)
-# A command may be a stop, which anybody signed in may give: the route asks for the operator (`deps.may_command`).
+# A command may be a stop, which anybody signed in may give: its route asks for the operator (`routes.sessions`).
 _ASKED_LATER = "commands"
 
 

@@ -4,7 +4,6 @@
 its args are what was asked for by the path, and what was made where the answer says where that is.
 """
 
-import time
 from collections.abc import AsyncIterator
 from typing import Any
 
@@ -13,7 +12,7 @@ from fastapi import Depends, Request, Response
 from fullpose_server.api.deps import AddressDep, ServicesDep, WhoDep
 from fullpose_server.api.known_errors import known_problem
 from fullpose_server.api.paths import API
-from fullpose_server.store.audit_entry import AuditEntry
+from fullpose_server.store.audit_entry import of_no_rig
 
 
 async def _change(
@@ -29,20 +28,7 @@ async def _change(
         route = str(request.scope["route"].path).removeprefix(API)
         made = response.headers.get("location")
         args: dict[str, Any] = dict(request.path_params) | ({} if made is None else {"made": made.removeprefix(API)})
-        services.trail.follow(
-            AuditEntry(
-                at=time.time(),
-                who=who,
-                rig="",  # of none
-                command=f"{request.method} {route}",
-                args=args,
-                lease=None,
-                states=("", ""),
-                accepted=refused is None,
-                detail=refused,
-                address=address,
-            )
-        )
+        services.trail.follow(of_no_rig(who, f"{request.method} {route}", args, address, refused))
 
 
 def _why(error: BaseException) -> str:

@@ -1,8 +1,6 @@
 """What every way to command a session shares: its secrets, the priority channel of stop and E-stop, the audit."""
 
 import asyncio
-import secrets
-import time
 from collections.abc import Coroutine
 from typing import Any
 
@@ -13,15 +11,9 @@ from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.session.errors import IllegalCommandError
 from fullpose_server.session.states import Command, State
-from fullpose_server.store.audit_entry import AuditEntry
+from fullpose_server.store.audit_entry import of_no_rig
 
-SECRET_BYTES = 32
 _LONGEST_NAME = 64
-
-
-def new_secret() -> str:
-    """A secret of the server's making: it is told once, to whom it is for, and kept nowhere."""
-    return secrets.token_urlsafe(SECRET_BYTES)
 
 
 def by_priority(
@@ -83,8 +75,4 @@ def audit_of_people(
 ) -> None:
     """Have written down who signed in, or changed what about whom; it is no rig's."""
     told: dict[str, Any] = {} if about is None else {"about": about}
-    states = ("", "")
-    entry = AuditEntry(
-        time.time(), who[:_LONGEST_NAME], "", word, told, None, states, refused is None, refused, address
-    )
-    services.trail.follow(entry)
+    services.trail.follow(of_no_rig(who[:_LONGEST_NAME], word, told, address, refused))

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple, Self
 
 from fullpose_server.api.problems import ApiError
 from fullpose_server.errors import ServerError
-from fullpose_server.people.admitted import new_secret, proof_of
 from fullpose_server.people.roles import Role
+from fullpose_server.secret import new_secret, proof_of
 from fullpose_server.settings import Settings
 
 PENDING_S = 600.0  # that a person may take over there

@@ -2,7 +2,6 @@
 
 import os
 import pwd
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -30,9 +29,10 @@ def people_of(data_dir: Path | None, config: Path | None) -> Iterator["PeopleSto
 def _database(data_dir: Path | None, config: Path | None) -> Iterator["Database"]:
     from fullpose_server.cli._configuration import configured
     from fullpose_server.store.database import Database
+    from fullpose_server.store.readonly import DATABASE
 
     folder = configured(data_dir=data_dir, config=config).settings.data_dir
-    database = Database(folder / "fullpose.db")
+    database = Database(folder / DATABASE)
     try:
         yield database
     finally:
@@ -54,14 +54,13 @@ def changing_people(
     Raises `ServerError`.
     """
     from fullpose_server.store.audit import AuditLog
-    from fullpose_server.store.audit_entry import AuditEntry
+    from fullpose_server.store.audit_entry import of_no_rig
 
     with _database(data_dir, config) as database:
         log, people = AuditLog(database), _store(database)
 
         def audit(word: str, about: str) -> None:
-            states = ("", "")
-            log.write([AuditEntry(time.time(), _who(), "", word, {"about": about}, None, states, True, None)])
+            log.write([of_no_rig(_who(), word, {"about": about}, None)])
 
         yield people, audit
 

@@ -71,9 +71,9 @@ def lines(
 
 def _database(data_dir: Path | None, config: Path | None) -> Path:
     from fullpose_server.cli._configuration import configured
-    from fullpose_server.store.reading import NAME
+    from fullpose_server.store.readonly import DATABASE
 
-    return configured(data_dir=data_dir, config=config).settings.data_dir / NAME
+    return configured(data_dir=data_dir, config=config).settings.data_dir / DATABASE
 
 
 def _time(seconds: float) -> str:

@@ -24,7 +24,8 @@ from fullpose_server.runtime.recording.record_names import RECORD, is_run
 from fullpose_server.runtime.recording.run_index import RunSummary, is_being_written, summary_of
 from fullpose_server.session.states import Command
 from fullpose_server.store.audit import newest_hash, read_rows
-from fullpose_server.store.reading import NAME, reading
+from fullpose_server.store.reading import reading
+from fullpose_server.store.readonly import DATABASE
 from fullpose_server.store.tables import AlarmRow, AuditRow, PlanRow, TrajectoryRow
 
 AFTER_S = 5.0  # what is done so soon after a run's end belongs to it, but for what begins another
@@ -63,7 +64,7 @@ def sources_of(folder: Path, run: str) -> Sources:
     """
     found = _recorded(folder, run)
     _take_rig(found, folder)
-    with reading(folder / NAME) as session:
+    with reading(folder / DATABASE) as session:
         _take_plan(found, folder, session)
         _take_flight(found, folder, session)
         _take_history(found, session)

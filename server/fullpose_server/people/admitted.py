@@ -4,14 +4,13 @@ A secret is kept nowhere: what is known of it is its sha-256, for a secret is 25
 matter (`passwords`).
 """
 
-import hashlib
-import secrets
 from collections.abc import Iterable
 from typing import NamedTuple
 
 import msgspec
 
 from fullpose_server.people.roles import Role
+from fullpose_server.secret import proof_of
 
 COOKIE = "fullpose_session"
 TOKEN_PREFIX = "fp_"  # so that a token that was left in a file is known for one
@@ -70,16 +69,6 @@ class Admitted:
 def holds(credential: Credential, now: float) -> bool:
     """Whether it has not run out."""
     return credential.until is None or now < credential.until
-
-
-def new_secret(prefix: str = "") -> str:
-    """256 random bits."""
-    return prefix + secrets.token_urlsafe(32)
-
-
-def proof_of(secret: str) -> str:
-    """What is kept of a secret."""
-    return hashlib.sha256(secret.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def shown_by(authorization: str | None, cookie: str | None) -> Shown | None:

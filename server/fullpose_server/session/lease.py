@@ -6,7 +6,6 @@ Every change of hands gives a new epoch and another secret; inside an epoch each
 the last. So a command that was delayed, doubled or sent by a former holder is known as such, down to the drive.
 """
 
-import hashlib
 import hmac
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -29,11 +28,6 @@ class LeaseAction(StrEnum):
 
 
 GIVES_SECRET = frozenset({LeaseAction.TAKE, LeaseAction.TAKEOVER, LeaseAction.REQUEST})
-
-
-def proof_of(secret: str) -> str:
-    """What the session knows of a secret: sha-256, for a secret is as random as that."""
-    return hashlib.sha256(secret.encode()).hexdigest()
 
 
 @dataclass(frozen=True)

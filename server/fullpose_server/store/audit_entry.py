@@ -1,5 +1,6 @@
 """One line of the audit, before it is a row: light, for the stop gate makes some too."""
 
+import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,3 +22,11 @@ class AuditEntry:
     accepted: bool
     detail: str | None
     address: str | None = None
+
+
+def of_no_rig(
+    who: str, command: str, args: dict[str, Any], address: str | None, refused: str | None = None
+) -> AuditEntry:
+    """A line as of now about what is no rig's: people, flights, plans. `refused`: why it was not done."""
+    states = ("", "")
+    return AuditEntry(time.time(), who, "", command, args, None, states, refused is None, refused, address)

@@ -24,12 +24,11 @@ from typing import IO
 
 from fullpose_server.errors import ServerError
 from fullpose_server.formats import durable
-from fullpose_server.store.readonly import readonly
+from fullpose_server.store.readonly import DATABASE, readonly
 from fullpose_server.version import VERSION
 
 FORMAT = 1
 MANIFEST = "manifest.json"
-DATABASE = "fullpose.db"
 FOLDERS = ("trajectories", "plans", "comparisons", "runs")
 RIGS = "rigs"  # of these the files, not the folders of their processes
 SECRET = (DATABASE, "evidence.key")  # at the top, readable by their owner alone

@@ -10,9 +10,10 @@ from sqlalchemy import Select, delete, func, select, text
 from sqlalchemy.orm import Session
 
 from fullpose_server.errors import NotFoundError, ServerError
-from fullpose_server.people.admitted import TOKEN_PREFIX, Admitted, Credential, new_secret, proof_of
+from fullpose_server.people.admitted import TOKEN_PREFIX, Admitted, Credential
 from fullpose_server.people.passwords import hashed
 from fullpose_server.people.roles import Role
+from fullpose_server.secret import new_secret, proof_of
 from fullpose_server.store.database import Database
 from fullpose_server.store.tables import CredentialRow, UserRow
 
@@ -52,7 +53,7 @@ class PeopleStore:
 
     # --- people ---
 
-    def add(self, name: str, role: Role, password: str | None, subject: str | None = None) -> None:
+    def add(self, name: str, role: Role, password: str | None, subject: str | None = None) -> UserRow:
         """A new person. Raises `PersonError` where there is one of that name, `PasswordError`."""
         kept = None if password is None else hashed(password, name)
         with self._changing() as session:
@@ -62,6 +63,7 @@ class PeopleStore:
             row = UserRow(name=name, role=role, password=kept, subject=subject, disabled=False, created=time.time())
             row.changed = _next(session)
             session.add(row)
+            return row
 
     def change(
         self,
@@ -119,8 +121,7 @@ class PeopleStore:
         known = self.by_subject(subject)
         if known is not None:
             return known if known.role == role else self.change(known.name, role=role)
-        self.add(name, role, None, subject)
-        return self.change(name)
+        return self.add(name, role, None, subject)
 
     def all(self) -> list[UserRow]:
         """By name."""

@@ -4,7 +4,7 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
-from fullpose_server.store.readonly import readonly
+from fullpose_server.store.readonly import DATABASE, readonly
 
 
 def had_people(file: Path) -> bool:
@@ -15,7 +15,7 @@ def had_people(file: Path) -> bool:
 
 def has_people(data_dir: Path) -> bool:
     """Whether somebody could sign in to a server on this folder. A database that cannot be read has nobody."""
-    return _has_rows(data_dir / "fullpose.db")
+    return _has_rows(data_dir / DATABASE)
 
 
 def _has_rows(file: Path) -> bool:

@@ -12,8 +12,6 @@ from fullpose_server.errors import DamagedError, FileError, ServerError
 from fullpose_server.store.database import HEAD, NewerDatabaseError
 from fullpose_server.store.readonly import readonly
 
-NAME = "fullpose.db"  # in a data folder
-
 
 class EarlierDatabaseError(ServerError):
     """An earlier version wrote it, and reading cannot bring it up."""

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from fullpose_server.client import Client, ClientError
-from fullpose_server.session.lease import proof_of
+from fullpose_server.secret import proof_of
 from tests.fullpose_server.api.live_server import LiveServer, Operator, live_server
 
 URL = "/rigs/vertical-4"

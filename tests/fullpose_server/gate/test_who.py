@@ -24,8 +24,9 @@ from fullpose_server.gate.keeper import GateProcess, Keeper
 from fullpose_server.gate.served import Connections
 from fullpose_server.gate.who import Who
 from fullpose_server.logs import LogFormat, LogLevel, LogSettings
-from fullpose_server.people.admitted import Admitted, Credential, proof_of
+from fullpose_server.people.admitted import Admitted, Credential
 from fullpose_server.people.roles import Role
+from fullpose_server.secret import proof_of
 from fullpose_server.store.database import Database
 from fullpose_server.store.people import PeopleStore
 from tests.support.serving import running

@@ -4,8 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fullpose_server.people.admitted import COOKIE, Admitted, Credential, Shown, proof_of, shown_by
+from fullpose_server.people.admitted import COOKIE, Admitted, Credential, Shown, shown_by
 from fullpose_server.people.roles import Role
+from fullpose_server.secret import proof_of
 
 TOKEN, SESSION = f"fp_{'t' * 43}", "s" * 43  # as they look, and the same in every process that collects the tests
 KNOWN = Admitted(

@@ -17,8 +17,9 @@ from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.messages import Reply, Snapshot
 from fullpose_server.runtime.contract.telemetry import Flag
 from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.secret import proof_of
 from fullpose_server.session.alarms import Alarm, Severity
-from fullpose_server.session.lease import LeaseAction, LeaseToken, proof_of
+from fullpose_server.session.lease import LeaseAction, LeaseToken
 from fullpose_server.session.states import IN_MOTION
 from tests.support.waiting import answered, soon
 

@@ -4,12 +4,13 @@ import pytest
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, rule
 
+from fullpose_server.secret import proof_of
 from fullpose_server.session.alarms import Alarm
 from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import (
     LeaseError,
 )
-from fullpose_server.session.lease import GIVES_SECRET, LeaseAction, proof_of
+from fullpose_server.session.lease import GIVES_SECRET, LeaseAction
 from fullpose_server.session.machine import SessionMachine, SilencePolicy
 from fullpose_server.session.states import Event, State
 

@@ -2,8 +2,9 @@
 
 import pytest
 
+from fullpose_server.secret import proof_of
 from fullpose_server.session.errors import LeaseError
-from fullpose_server.session.lease import LeaseBook, LeaseToken, proof_of
+from fullpose_server.session.lease import LeaseBook, LeaseToken
 
 EMPTY = LeaseBook(silent_s=5.0)
 ANNA, BERT, CARL, GUESSED = (proof_of(secret) for secret in ("anna's", "bert's", "carl's", "guessed"))

@@ -6,12 +6,13 @@ from typing import Any
 
 import pytest
 
+from fullpose_server.secret import proof_of
 from fullpose_server.session import table
 from fullpose_server.session.actions import Bind, Given, GoLive, Move, Order, Position
 from fullpose_server.session.alarms import Severity
 from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import BindingError, IllegalCommandError, LeaseError, NotReadyError
-from fullpose_server.session.lease import LeaseAction, LeaseToken, proof_of
+from fullpose_server.session.lease import LeaseAction, LeaseToken
 from fullpose_server.session.machine import SessionMachine, SilencePolicy
 from fullpose_server.session.states import Command, Event, State
 

@@ -12,7 +12,7 @@ import msgspec
 from fastapi import APIRouter, WebSocket
 from pydantic import TypeAdapter
 
-from fullpose_server.api.commanding import audit, new_secret, with_rig_file
+from fullpose_server.api.commanding import audit, with_rig_file
 from fullpose_server.api.deps import AddressDep, PersonDep, Services, ServicesDep, WhoDep
 from fullpose_server.api.errors import problem_of
 from fullpose_server.api.problems import ApiError
@@ -33,6 +33,7 @@ from fullpose_server.people.admitted import Credential
 from fullpose_server.runtime.live.packets import Kind, LiveReply, LiveStatus, encode_sample
 from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.secret import new_secret
 
 GONE = 4503
 router = APIRouter(tags=["live"])

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Body, Response
 
 from fullpose_server.api.admission import forbidden
-from fullpose_server.api.commanding import audit, by_priority, new_secret, with_rig_file, without_process
+from fullpose_server.api.commanding import audit, by_priority, with_rig_file, without_process
 from fullpose_server.api.deps import AddressDep, PersonDep, Services, ServicesDep, WhoDep, WhoStopsDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.lease import LeaseGiven, LeaseIn, proof_by
@@ -27,6 +27,7 @@ from fullpose_server.planning.plan_result import refusal_of
 from fullpose_server.runtime.contract.messages import ErrorBody, Reply
 from fullpose_server.runtime.supervisor.errors import HostError, RefusedError, RequestTooLargeError
 from fullpose_server.runtime.supervisor.rig_client import RigHost
+from fullpose_server.secret import new_secret
 from fullpose_server.session.lease import GIVES_SECRET, LEASE_NEEDED, LeaseAction
 from fullpose_server.session.states import NEEDS_NO_LEASE, Command
 

@@ -6,7 +6,8 @@ from pydantic import Field, model_validator
 
 from fullpose_server.api.schemas.base import Ordinal, Wire
 from fullpose_server.people.admitted import Credential
-from fullpose_server.session.lease import GIVES_SECRET, LeaseAction, proof_of
+from fullpose_server.secret import proof_of
+from fullpose_server.session.lease import GIVES_SECRET, LeaseAction
 from fullpose_server.session.lease import LeaseToken as Token
 
 Secret = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,128}$")]
