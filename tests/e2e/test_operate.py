@@ -70,8 +70,14 @@ def test_flight_from_upload_to_replay(pages: Pages, shots: Path) -> None:
     console.expect_state("held")
     assert console.path_time() == held_at
     console.give("resume", "running")
-    console.until(lambda: console.path_time() > held_at + 0.5)
-    assert console.error("solve") < 1e-9
+    resumed: list[float] = []
+
+    def went_on() -> bool:  # what it flies is read on the way: a slow page may find the flight at its end
+        resumed.append(console.error("solve"))
+        return console.path_time() > held_at + 0.5
+
+    console.until(went_on)
+    assert max(error for error in resumed if math.isfinite(error)) < 1e-9
 
     # E-stop latches; the way out is to acknowledge, then to reset.
     page.get_by_role("button", name="E-stop").click()
