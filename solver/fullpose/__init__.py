@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fullpose.compare import compare
     from fullpose.errors import CancelledError, InputError, MethodError, RigError, SolverError
     from fullpose.plan import Plan, PlanOptions, PreviewOptions, plan
+    from fullpose.recorded import diagnose
     from fullpose.registry import method_names, method_options
     from fullpose.resample import resample
     from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
@@ -40,6 +41,7 @@ _HOMES = {
     "compare": ("compare",),
     "errors": ("CancelledError", "InputError", "MethodError", "RigError", "SolverError"),
     "plan": ("Plan", "PlanOptions", "PreviewOptions", "plan"),
+    "recorded": ("diagnose",),
     "registry": ("method_names", "method_options"),
     "resample": ("resample",),
     "rig": ("FrameLimits", "Geometry", "Rig", "builtin_rigs"),
@@ -69,6 +71,7 @@ __all__ = [
     "compare",
     "dcm_from_euler",
     "dcm_from_quaternion",
+    "diagnose",
     "euler_from_dcm",
     "euler_from_ned",
     "method_names",
