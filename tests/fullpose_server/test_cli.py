@@ -15,7 +15,9 @@ from scipy.spatial.transform import Rotation
 
 from fullpose.registry import method_names
 from fullpose_server.cli.solve import METHODS
+from tests.support.command_line import Done, typed
 from tests.support.repository import PYTHONPATH, ROOT
+from tests.support.serving import COMMAND
 
 FLIGHTS = ROOT / "examples" / "flights"
 HEADER = "time_s,yaw_deg,pitch_deg,roll_deg\n"
@@ -25,22 +27,9 @@ GOOD = HEADER + "".join(
 FAST = HEADER + "".join(f"{k / 100},0,0,{40 * k}\n" for k in range(50))
 
 
-def fullpose(*arguments: str | Path, timeout: float = 600.0) -> subprocess.CompletedProcess[str]:
-    command = [
-        sys.executable,
-        "-W",
-        "error",
-        "-c",
-        "from fullpose_server.cli import main; main()",
-        *map(str, arguments),
-    ]
-    env = os.environ | {"PYTHONPATH": PYTHONPATH}
-    return subprocess.run(command, capture_output=True, text=True, timeout=timeout, env=env, check=False)
-
-
-def solve(flight: Path, folder: Path, *more: str | Path, method: str = "exact") -> subprocess.CompletedProcess[str]:
+def solve(flight: Path, folder: Path, *more: str | Path, method: str = "exact") -> Done:
     rig = () if "--rig" in more else ("--rig", "vertical-4")
-    return fullpose("solve", flight, *rig, "--method", method, "--out", folder / "out.csv", *more)
+    return typed("solve", flight, *rig, "--method", method, "--out", folder / "out.csv", *more)
 
 
 def written(folder: Path, text: str) -> Path:
@@ -56,7 +45,7 @@ def table(path: Path) -> tuple[list[str], np.ndarray]:
 
 
 def test_the_help_names_every_command_and_method() -> None:
-    text = fullpose("--help").stdout
+    text = typed("--help").stdout
     for command in ("demo", "serve", "solve", "compare", "rigs", "export", "doctor"):
         assert re.search(rf"^  {command} ", text, re.MULTILINE), text
     assert tuple(METHODS.split(", ")) == method_names()
@@ -85,6 +74,15 @@ def test_solve_writes_angles_that_reproduce_the_flight(tmp_path: Path) -> None:
     assert np.abs(angles[:, 1]).max() == pytest.approx(report["peak"]["base"]["position_deg"], rel=1e-12)
 
 
+def test_a_shell_gets_the_status_the_line_and_nothing_else(tmp_path: Path) -> None:
+    env = os.environ | {"PYTHONPATH": PYTHONPATH}
+    for text, status, lines in ((GOOD, 0, 0), (HEADER, 2, 1), (FAST, 3, 1)):
+        command = [sys.executable, "-W", "error", *COMMAND[1:], "solve", str(written(tmp_path, text))]
+        command += ["--rig", "vertical-4", "--method", "exact", "--out", str(tmp_path / "out.csv")]
+        done = subprocess.run(command, capture_output=True, text=True, env=env, check=False)
+        assert (done.returncode, done.stderr.count("\n")) == (status, lines), done.stderr
+
+
 def test_a_real_flight_in_north_east_down(tmp_path: Path) -> None:
     done = solve(FLIGHTS / "slow_roll.csv", tmp_path, "--convention", "ned", "--plot", tmp_path / "p.html")
     assert done.returncode == 0, done.stderr
@@ -97,7 +95,7 @@ def test_a_real_flight_in_north_east_down(tmp_path: Path) -> None:
 
 
 def test_parquet_out(tmp_path: Path) -> None:
-    done = fullpose(
+    done = typed(
         "solve", written(tmp_path, GOOD), "--rig", "vertical-4", "--method", "exact", "--out", tmp_path / "o.parquet"
     )
     assert done.returncode == 0, done.stderr
@@ -187,7 +185,7 @@ def test_what_does_not_fit_is_told_with_status_3_and_the_report_is_written(tmp_p
 
 
 def test_the_default_method_plans_the_whole_flight(tmp_path: Path) -> None:
-    done = fullpose("solve", written(tmp_path, GOOD), "--rig", "vertical-limited", "--out", tmp_path / "out.csv")
+    done = typed("solve", written(tmp_path, GOOD), "--rig", "vertical-limited", "--out", tmp_path / "out.csv")
     assert done.returncode == 0, done.stderr
     assert " plan:" in done.stdout
 
@@ -215,17 +213,17 @@ def test_solve_and_help_stay_light(tmp_path: Path) -> None:
 
 
 def test_rigs_lists_the_built_in_ones_and_checks_files(tmp_path: Path) -> None:
-    text = fullpose("rigs").stdout
+    text = typed("rigs").stdout
     for name in ("vertical-4", "horizontal-4", "vertical-3", "horizontal-3", "vertical-limited"):
         assert f"{name}:" in text
     assert "-60..60 deg" in text
     bad = tmp_path / "bad.toml"
     bad.write_text("name = 1")
-    assert fullpose("rigs", bad).returncode == 2
+    assert typed("rigs", bad).returncode == 2
 
 
 def test_doctor_tells_one_line_a_check(tmp_path: Path) -> None:
-    done = fullpose("doctor", "--data-dir", tmp_path)
+    done = typed("doctor", "--data-dir", tmp_path)
     assert done.returncode in (0, 2)
     topics = [line[6:18].strip() for line in done.stdout.splitlines()]
     assert topics == ["version", "real time", "memory", "telemetry", "timer", "data", "port", "console", "solver"]
@@ -233,7 +231,7 @@ def test_doctor_tells_one_line_a_check(tmp_path: Path) -> None:
 
 
 def test_export_says_what_there_is(tmp_path: Path) -> None:
-    done = fullpose("export", "latest", "--data-dir", tmp_path)
+    done = typed("export", "latest", "--data-dir", tmp_path)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
 
 
@@ -241,7 +239,7 @@ def test_remedy_says_what_was_changed_and_writes_the_flight_so(tmp_path: Path) -
     flight = written(tmp_path, HEADER + "".join(f"{k / 100},10,20,{9 * k}\n" for k in range(80)))
     out, report = tmp_path / "out.csv", tmp_path / "r.json"
     common = ("--rig", "vertical-4", "--out", out, "--report", report)
-    done = fullpose("remedy", flight, *common, "--kind", "slow_down")
+    done = typed("remedy", flight, *common, "--kind", "slow_down")
     assert done.returncode == 0, done.stderr
     made = json.loads(report.read_text())
     factor = made["remedy"]["value"]
@@ -258,6 +256,6 @@ def test_remedy_says_what_was_changed_and_writes_the_flight_so(tmp_path: Path) -
         (("--kind", "relax", "--limit", "jerk"), 2, "acceleration"),
         (("--kind", "relax", "--frame", "outer", "--limit", "acceleration"), 3, "outer acceleration"),
     ):
-        done = fullpose("remedy", flight, *common, *more)
+        done = typed("remedy", flight, *common, *more)
         assert (done.returncode, done.stderr.count("\n")) == (status, 1), done.stderr
         assert told in done.stderr

@@ -5,7 +5,8 @@ from pathlib import Path
 import httpx
 
 from tests.fullpose_server.api.live_server import FLIGHT
-from tests.support.serving import running, typed
+from tests.support.command_line import typed
+from tests.support.serving import running
 
 PATIENT_S = 300.0
 

@@ -6,7 +6,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from tests.support.serving import running, typed
+from tests.support.command_line import typed
+from tests.support.serving import running
 from tests.support.waiting import until
 
 PASSWORD = "correct horse battery"

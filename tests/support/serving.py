@@ -26,18 +26,6 @@ def running(*arguments: str | Path, files: int | None = None) -> Iterator[tuple[
         process.communicate(timeout=60)
 
 
-def typed(*arguments: str | Path, given: str = "") -> "subprocess.CompletedProcess[str]":
-    """A command that ends by itself, with these lines on its standard input."""
-    return subprocess.run(
-        [*COMMAND, *map(str, arguments)],
-        input=given,
-        capture_output=True,
-        text=True,
-        check=False,
-        env=os.environ | {"PYTHONPATH": PYTHONPATH},
-    )
-
-
 def start(*arguments: str | Path, files: int | None = None, **env: str) -> "subprocess.Popen[str]":
     """Start one; with `files` it may have no more of them open, and cannot ask for more."""
     limited = [] if files is None else ["prlimit", f"--nofile={files}:{files}"]
