@@ -80,7 +80,7 @@ def test_panels_stand_beside_each_other_and_ask_the_source_that_is_provisioned()
 @pytest.fixture(scope="module")
 def exposed(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
     """Names of the series that a real server has."""
-    with live_server(tmp_path_factory.mktemp("data"), spare_rig_process=False) as server:
+    with live_server(tmp_path_factory.mktemp("data")) as server:
         server.http.get("/health")
         text = server.http.get("/metrics").text
     kinds = dict(re.findall(r"^# TYPE (\w+) (\w+)$", text, re.MULTILINE))

@@ -130,7 +130,8 @@ class Operator:
 
 @contextmanager
 def live_server(folder: Path, **overrides: Any) -> Iterator[LiveServer]:
-    settings = Settings(data_dir=folder, **overrides)
+    # No rig process in reserve: each server would start one more than its test has use for.
+    settings = Settings(data_dir=folder, **{"spare_rig_process": False, **overrides})
     listener = bind("127.0.0.1", 0)
     with watched_loop() as watch:
         server = _Thread(settings, listener, watch)
