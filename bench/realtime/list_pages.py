@@ -27,7 +27,7 @@ from bench.machine import machine
 from bench.realtime.bare_uvicorn import bare_server
 from bench.realtime.rig_load import get, post, served
 from fullpose_server.planning.compare_request import ERROR, REQUEST
-from fullpose_server.runtime.recording.run_index import RunSummary
+from fullpose_server.runtime.recording.run_summary import RunSummary
 from fullpose_server.session.alarms import Alarm, Severity
 from fullpose_server.store.alarms import alarm_id
 from fullpose_server.store.database import Database

@@ -16,9 +16,10 @@ import httpx
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
+from fullpose_server.processes import START_S
+
 API = "/api/v1"
 POLL_S = 0.1
-START_S = 180.0  # of a rig's process, at the most
 
 
 class ClientError(Exception):

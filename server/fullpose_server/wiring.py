@@ -96,6 +96,7 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         stack.push_async_callback(services.hosts.close, stop_rigs=settings.stop_rigs_on_exit)
         await services.hosts.adopt()
         stack.push_async_callback(services.upkeep.close)
+        stack.callback(services.runs.close)
         services.upkeep.start()
         stack.push_async_callback(services.people.close)
         services.people.start()
@@ -108,7 +109,8 @@ def _opened(path: Path, quarantine: Quarantine) -> Database:
         return Database(path)
     except DamagedError as error:
         files = [path, *(path.with_name(f"{path.name}{end}") for end in ("-wal", "-shm"))]
-        quarantine.take("database", path.stem, files, f"{error}; to restore: stop, put a backup in the place of {path}")
+        why = f"{error}; to restore: stop, put a backup in the place of {path.name}"
+        quarantine.take("database", path.stem, files, why)
         return Database(path)
 
 
@@ -172,11 +174,12 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
 
 
 def _retain(settings: Settings, runs: RunFiles, alarms: AlarmHistory) -> None:
-    """Let go of what is not to be kept any longer."""
+    """Let go of what is not to be kept any longer, and look at what has been recorded."""
     rule = Retention(settings.keep_runs_days, settings.keep_runs_bytes)
     if rule.on:
         sweep(runs, rule)
     alarms.sweep(settings.keep_alarms_days, settings.keep_alarms, time.time())
+    runs.read_ahead()
 
 
 def _emptied(folder: Path) -> Path:

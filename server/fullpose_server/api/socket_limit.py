@@ -1,4 +1,4 @@
-"""How many WebSockets are open at once, and how large a message of one may be."""
+"""How many WebSockets are open at once, how large a message of one may be, and a client that leaves while refused."""
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -6,6 +6,10 @@ from fullpose_server.api.problems import ApiError, problem_response
 from fullpose_server.settings import Settings
 
 TOO_LARGE = 1009  # close code of a message that is
+
+
+class _LeftError(Exception):
+    """The client has gone before it was let in: nobody is told why it was not, and nothing is wrong."""
 
 
 class SocketLimit:
@@ -27,6 +31,17 @@ class SocketLimit:
             await problem_response(full.problem)(scope, receive, send)
             return
         self._open += 1
+        begun = False
+
+        async def answered(message: Message) -> None:
+            nonlocal begun
+            try:
+                await send(message)
+            except OSError as gone:
+                if begun:
+                    raise
+                raise _LeftError from gone  # else it would be taken for an error of the app, which some OSErrors are
+            begun = begun or message["type"] == "websocket.accept"
 
         async def bounded() -> Message:
             message = await receive()
@@ -38,6 +53,8 @@ class SocketLimit:
             return {"type": "websocket.disconnect", "code": TOO_LARGE, "reason": reason}
 
         try:
-            await self._app(scope, bounded, send)
+            await self._app(scope, bounded, answered)
+        except _LeftError as left:
+            raise left.__cause__ or left from None  # the server that has the connection knows it
         finally:
             self._open -= 1

@@ -13,7 +13,7 @@ import numpy as np
 from fullpose._typing import Array
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.runtime.contract.telemetry import Flag, Samples
-from fullpose_server.runtime.recording.run_index import RunSummary
+from fullpose_server.runtime.recording.run_summary import RunSummary
 from fullpose_server.session.run_end import RunEnd
 
 POSITION_SLACK_DEG = 1e-9

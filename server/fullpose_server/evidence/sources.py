@@ -21,7 +21,8 @@ from fullpose_server.formats.rig_toml import rig_toml
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.recording.mcap_reader import RecordError, is_complete, read_record, run_of
 from fullpose_server.runtime.recording.record_names import RECORD, is_run
-from fullpose_server.runtime.recording.run_index import RunSummary, is_being_written, summary_of
+from fullpose_server.runtime.recording.run_index import is_being_written
+from fullpose_server.runtime.recording.run_summary import RunSummary, summary_of
 from fullpose_server.session.states import Command
 from fullpose_server.store.audit import newest_hash, read_rows
 from fullpose_server.store.reading import reading

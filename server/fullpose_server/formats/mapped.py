@@ -13,8 +13,9 @@ def map_doubles(path: Path, shape: tuple[int, ...]) -> Array:
     try:
         array = np.load(path, mmap_mode="r", allow_pickle=False)
     except Exception as cause:
-        raise DamagedError(f"{path}: not a readable array ({cause})") from cause
+        told = cause.strerror if isinstance(cause, OSError) and cause.strerror else cause  # without the path
+        raise DamagedError(f"{path.name}: not a readable array ({told})") from cause
     wanted = len(array.shape) == len(shape) and all(b in (a, -1) for a, b in zip(array.shape, shape, strict=True))
     if not wanted or array.dtype != np.dtype("<f8"):
-        raise DamagedError(f"{path}: {array.dtype} {array.shape}: expected float64 {shape}")
+        raise DamagedError(f"{path.name}: {array.dtype} {array.shape}: expected float64 {shape}")
     return np.asarray(array)

@@ -41,6 +41,11 @@ class PlanFolderError(Exception):
         self.path = path
         self.problem = problem
 
+    @property
+    def told(self) -> str:
+        """The same without the folder, for who is not on this machine."""
+        return f"{self.path.name}: {self.problem}"
+
 
 @dataclass(frozen=True)
 class PlanInfo:
@@ -221,7 +226,7 @@ def _mapped(folder: Path, info: PlanInfo) -> PlanFolder:
         try:
             arrays[name] = map_doubles(path, shape)
         except DamagedError as error:
-            raise PlanFolderError(path, str(error).removeprefix(f"{path}: ")) from error
+            raise PlanFolderError(path, str(error).removeprefix(f"{path.name}: ")) from error
     return PlanFolder(info, **arrays)
 
 

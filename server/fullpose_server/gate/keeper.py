@@ -14,13 +14,15 @@ from fullpose_server.api.deps import Services
 from fullpose_server.api.problems import MEDIA_TYPE, ApiError
 from fullpose_server.gate import messages
 from fullpose_server.gate.served import Connections
+from fullpose_server.gate.waker import keep_awake
 from fullpose_server.logs import LogSettings
 from fullpose_server.people.admitted import Admitted
+from fullpose_server.processes import START_S
 from fullpose_server.runtime.supervisor.running import RunningProcess
 
 RETRY_S = 0.5
-START_S = 180.0  # for it to begin: a starved machine takes long over the imports, and to begin anew takes as long
 SILENT_S = 5.0  # a gate that tells nothing for so long serves nobody: it tells at least every `gate.process.SWEEP_S`
+SPARE_AFTER_S = 5.0  # the one in reserve is made when this one has begun: they would take the processor from each other
 _AT_ONCE = 64  # messages; then the event loop has its turn
 _END_S = 5.0
 log = logging.getLogger(__name__)
@@ -37,7 +39,7 @@ class GateProcess:
 
     @classmethod
     def spawn(cls, listener: socket.socket, log: LogSettings, proxies: tuple[str, ...] = ()) -> "GateProcess":
-        """Start one: it accepts at once, and waits for what it may stop and whom it may hand over to."""
+        """Start one: it gets ready, and accepts from when it is told what it may stop and who may."""
         ours, theirs = messages.link()
         with theirs:
             named = [word for each in proxies for word in ("--proxy", each)]
@@ -49,6 +51,7 @@ class GateProcess:
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
             )
+        keep_awake(process.pid, "the stop gate")
         return cls(process, ours, log, proxies)
 
     def end(self) -> None:
@@ -64,7 +67,8 @@ class GateProcess:
 class Keeper:
     """Of one server's gate, from construction until `close`; at most `most` connections are served at once.
 
-    Everything belongs to the event loop's thread.
+    Where the gate ends, another that has been got ready takes its place at once. Everything belongs to the event loop's
+    thread.
     """
 
     def __init__(
@@ -85,7 +89,9 @@ class Keeper:
         self._loop = asyncio.get_running_loop()
         self._ending = False
         self._gate = gate
-        self._heard = time.monotonic()
+        self._spare: GateProcess | None = None
+        self._past: list[GateProcess] = []  # that are to be ended
+        self._heard = self._since = time.monotonic()
         self._begun = False  # it has told something
         self._untold: deque[messages.ToGate] = deque()
         self._running.watch(self._changed)
@@ -105,12 +111,14 @@ class Keeper:
         self._loop.remove_reader(self._gate.link)
         self._loop.remove_writer(self._gate.link)
         self._listener.close()
-        await asyncio.to_thread(self._gate.end)
+        for gate in [self._gate, *filter(None, [self._spare]), *self._past]:
+            await asyncio.to_thread(gate.end)
 
     # --- the gate's life ---
 
     def _begin(self) -> None:
-        self._heard, self._begun = time.monotonic(), False
+        self._heard = self._since = time.monotonic()
+        self._begun = False
         self._untold.clear()
         self._loop.add_reader(self._gate.link, self._hear, self._gate)
         for process in self._running.all():
@@ -128,19 +136,35 @@ class Keeper:
             if before and silent and self._status.down_since is None:
                 self._lost(f"it has told nothing for {patience_s:g} s")
             if self._status.down_since is not None:
-                await asyncio.to_thread(self._gate.end)
-                self._gate = GateProcess.spawn(self._listener, self._gate.log, self._gate.proxies)
-                self._status.down_since = None
-                self._begin()
+                self._replace(self._spawned())
+            while self._past:
+                await asyncio.to_thread(self._past.pop().end)
+            if self._spare is not None and self._spare.process.poll() is not None:
+                self._past.append(self._spare)
+                self._spare = None
+            elif self._spare is None and self._begun and time.monotonic() - self._since > SPARE_AFTER_S:
+                self._spare = self._spawned()
+
+    def _spawned(self) -> GateProcess:
+        return GateProcess.spawn(self._listener, self._gate.log, self._gate.proxies)
+
+    def _replace(self, gate: GateProcess) -> None:
+        self._past.append(self._gate)
+        self._gate = gate
+        self._status.down_since = None
+        self._begin()
 
     def _lost(self, why: str) -> None:
         if self._status.down_since is None:
-            log.error("the stop gate, process %d, is started anew: %s", self._gate.process.pid, why)
+            log.error("the stop gate, process %d, is replaced: %s", self._gate.process.pid, why)
             self._status.down_since = time.time()
             self._loop.remove_reader(self._gate.link)
             self._loop.remove_writer(self._gate.link)
             with contextlib.suppress(ProcessLookupError):
                 self._gate.process.kill()
+            spare, self._spare = self._spare, None
+            if spare is not None:
+                self._replace(spare)
 
     def _changed(self, rig: str, process: RunningProcess | None) -> None:
         if process is None:

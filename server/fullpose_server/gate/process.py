@@ -8,6 +8,7 @@ import argparse
 import asyncio
 import contextlib
 import logging
+import select
 import signal
 import socket
 import time
@@ -201,11 +202,13 @@ def main() -> None:
     arguments.add_argument("--log-level", type=LogLevel, required=True)
     given = arguments.parse_args()
     configure(LogSettings(given.log_format, given.log_level))
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_IGN)  # a rig that brakes while the server ends can still be stopped
+    # A rig that brakes while the server ends, or that flies while Ctrl-Z suspends it, can still be stopped.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP):
+        signal.signal(number, signal.SIG_IGN)
     before_others(GATE)
     listener, link = socket.socket(fileno=given.listener), socket.socket(fileno=given.link)
     listener.setblocking(False)
+    select.select([link], [], [])  # one in reserve is told nothing until it is needed
 
     async def gate() -> None:
         await Gate(listener, link, files(), given.proxy).run()

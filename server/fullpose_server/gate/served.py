@@ -8,6 +8,7 @@ from typing import Any
 import uvicorn
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.server import ServerState
 
 log = logging.getLogger(__name__)
@@ -68,13 +69,28 @@ class OneRequest:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Have it answered."""
+        if scope["type"] == "websocket":
+            await self._opened(scope, receive, send)
+            return
 
         async def closing(message: Message) -> None:
             if message["type"] == "http.response.start":
                 message["headers"] = [*message.get("headers", ()), (b"connection", b"close")]
             await send(message)
 
-        await self._app(scope, receive, closing if scope["type"] == "http" else send)
+        await self._app(scope, receive, closing)
+
+    async def _opened(self, scope: Scope, receive: Receive, send: Send) -> None:
+        refused = False
+
+        async def watched(message: Message) -> None:
+            nonlocal refused
+            refused = refused or message["type"] == "websocket.http.response.start"
+            await send(message)
+
+        await self._app(scope, receive, watched)
+        if refused:
+            raise ClientDisconnected  # uvicorn would call it an error where the client did not wait to hear it
 
 
 def served_by(app: ASGIApp, **options: Any) -> uvicorn.Config:

@@ -44,9 +44,9 @@ def open_plan(plan: str, plans: PlanStore, quarantine: Quarantine) -> PlanFolder
     try:
         return read_plan(folder)
     except PlanFolderError as error:
-        quarantine.take("plan", plan, [folder], str(error))
-        plans.damaged(plan, str(error))
-        raise DamagedError(f"plan {plan} is damaged ({error}): make it again") from None
+        quarantine.take("plan", plan, [folder], error.told)
+        plans.damaged(plan, error.told)
+        raise DamagedError(f"plan {plan} is damaged ({error.told}): make it again") from None
 
 
 def scrub_rigs(folder: Path, quarantine: Quarantine) -> None:

@@ -5,12 +5,12 @@ import logging
 from collections.abc import Callable
 from typing import Any
 
-EVERY_S = 600.0
+EVERY_S = 60.0
 log = logging.getLogger(__name__)
 
 
 class Upkeep:
-    """One task. `once` after the start, in a thread; then `often` every ten minutes, where there is such."""
+    """One task. `once` after the start, in a thread; then `often` every minute, where there is such."""
 
     def __init__(self, once: Callable[[], Any], often: Callable[[], Any] | None) -> None:
         self._once = once

@@ -5,6 +5,8 @@ import json
 from collections.abc import AsyncIterator
 from typing import Any
 
+from fullpose_server.processes import how_it_ended, memory_kills
+
 LINE = 64 * 1024 * 1024  # a report with a thousand violations is one line
 
 
@@ -15,6 +17,7 @@ class WorkerProcess:
         self._program = program
         self._process: asyncio.subprocess.Process | None = None
         self._ready = False
+        self._memory_kills = 0  # of the system, before it began
 
     @property
     def ready(self) -> bool:
@@ -29,6 +32,7 @@ class WorkerProcess:
     async def start(self) -> None:
         """Start it and wait until it is ready. Raises `OSError` where it does not come to that."""
         await self.kill()
+        self._memory_kills = memory_kills()
         self._process = await asyncio.create_subprocess_exec(
             *self._program,
             stdin=asyncio.subprocess.PIPE,  # it ends when this does, so it never outlives the server
@@ -66,7 +70,7 @@ class WorkerProcess:
         if self._process is None:
             return "before it began"
         code = await self._process.wait()
-        return f"by signal {-code}" if code < 0 else f"with status {code}"
+        return f"by {how_it_ended(code, self._memory_kills, memory_kills())}"
 
     async def _line(self) -> bytes:
         if self._process is None or self._process.stdout is None:

@@ -61,9 +61,13 @@ class Shelf:
         if not 0.0 < lasts <= MAX_SHELF_S:
             raise ValueError(f"a shelf of {lasts:g} s: expected above 0, at most {MAX_SHELF_S:g} s")
 
-    def holds(self, code: str, frame: str | None, time_s: float) -> bool:
-        """Whether a warning raised at `time_s` is shelved by it."""
-        return self.code == code and self.frame in (None, frame) and time_s < self.until_s
+    def lasts(self, now_s: float) -> bool:
+        """Whether its time is not over: before its beginning, the clock was set back, and its end is not known."""
+        return self.since_s <= now_s < self.until_s
+
+    def holds(self, code: str, frame: str | None) -> bool:
+        """Whether a warning is shelved by it."""
+        return self.code == code and self.frame in (None, frame)
 
 
 @dataclass(frozen=True)
@@ -89,9 +93,9 @@ class AlarmBook:
     ) -> "AlarmBook":
         """The book with this alarm standing. The same again (code, frame, severity) only counts up, with its time.
 
-        A warning that is shelved is counted in the history, and does not stand.
+        A warning that is shelved is counted in the history, and does not stand: those whose time is over have `ended`.
         """
-        if severity is Severity.WARNING and any(shelf.holds(code, frame, time_s) for shelf in self.shelves):
+        if severity is Severity.WARNING and any(shelf.holds(code, frame) for shelf in self.shelves):
             return self._shelved(Alarm(0, code, severity, message, time_s, frame, value, limit, unit, shelved=True))
         latching = severity is not Severity.WARNING
         first = latching and not self.chained
@@ -130,7 +134,7 @@ class AlarmBook:
         shelves = tuple(sorted((*others, shelf), key=lambda s: s.until_s)[-MAX_SHELVES:])
 
         def stays(alarm: Alarm) -> bool:
-            return alarm.severity is not Severity.WARNING or not shelf.holds(alarm.code, alarm.frame, shelf.since_s)
+            return alarm.severity is not Severity.WARNING or not shelf.holds(alarm.code, alarm.frame)
 
         return replace(self, standing=tuple(a for a in self.standing if stays(a)), shelves=shelves)
 
@@ -140,7 +144,7 @@ class AlarmBook:
 
     def ended(self, now_s: float) -> "AlarmBook":
         """The book without the shelves whose time is over."""
-        kept = tuple(s for s in self.shelves if now_s < s.until_s)
+        kept = tuple(s for s in self.shelves if s.lasts(now_s))
         return self if len(kept) == len(self.shelves) else replace(self, shelves=kept)
 
     def acknowledged(self, who: str, numbers: frozenset[int] | None = None, time_s: float | None = None) -> "AlarmBook":

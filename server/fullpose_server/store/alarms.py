@@ -95,8 +95,9 @@ class AlarmHistory:
     def shelves(self, rig: str, now_s: float) -> tuple[Shelf, ...]:
         """Those of a rig that have not ended."""
         with self._database.begin() as session:
-            rows = session.scalars(select(ShelfRow).where(ShelfRow.rig == rig, ShelfRow.until_s > now_s))
-            return tuple(Shelf(r.code, r.frame, r.since_s, r.until_s, r.by, r.reason) for r in rows)
+            rows = session.scalars(select(ShelfRow).where(ShelfRow.rig == rig))
+            shelves = [Shelf(r.code, r.frame, r.since_s, r.until_s, r.by, r.reason) for r in rows]
+        return tuple(shelf for shelf in shelves if shelf.lasts(now_s))
 
     def sweep(self, days: float | None, most: int | None, now_s: float) -> int:
         """Remove what is older than so many days, then the oldest beyond so many; returns how many went."""

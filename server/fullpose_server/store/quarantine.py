@@ -39,5 +39,8 @@ class Quarantine:
             for entry in sorted(self.folder.iterdir()):
                 reason = entry / REASON
                 told = reason.read_text("utf-8", "replace").strip() if reason.is_file() else "damaged"
-                found.append(f"{told}: it is in {entry}; remove it there when it is of no more use")
+                where = (
+                    f"{self.folder.name}/{entry.name} of the data folder"  # clients are told no paths of this machine
+                )
+                found.append(f"{told}: it is in {where}; remove it there when it is of no more use")
         return found

@@ -46,7 +46,8 @@ def test_history_and_shelves_outlive_server_and_rig_process(tmp_path: Path) -> N
         (seen,) = server.http.get("/alarms", params={"code": "estop"}).json()
         assert (seen["id"], seen["standing"], seen["acknowledged_by"]) == (first["id"], False, "ann")
         assert seen["acknowledged_s"] >= seen["time_s"]
-        assert operator.command("shelve", code="late", minutes=60.0, reason="known").status_code == 200
+        assert operator.command("shelve", code="lateness", minutes=60.0, reason="known").status_code == 200
+        assert operator.command("shelve", code="late", minutes=60.0).status_code == 422
         (shelf,) = operator.session()["shelves"]
         pid = operator.session()["health"]["rig_pid"]
         os.kill(pid, signal.SIGKILL)

@@ -12,6 +12,7 @@ import pytest
 from mcap.reader import make_reader
 
 from fullpose_server.runtime.contract.telemetry import SAMPLE
+from fullpose_server.runtime.recording import run_index
 from fullpose_server.runtime.recording.mcap_reader import is_complete, read_samples
 from fullpose_server.runtime.recording.mcap_writer import RunRecord
 from fullpose_server.runtime.recording.run_index import RunFiles
@@ -189,6 +190,26 @@ def test_a_run_that_is_being_written_is_not_read_through_and_one_that_was_cut_of
     np.testing.assert_array_equal(read_samples(path, 0, 4097)["seq"], np.arange(1, 4098))
     record.finish()
     assert runs.get(path.stem).complete
+
+
+def test_a_list_reads_no_more_records_than_it_has_time_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    paths = [tmp_path / f"20261122T03040{k}-vertical-4-00000{k}.mcap" for k in range(3)]
+    for path in paths:
+        record = RunRecord(path, {"run_id": path.stem, "who": "ann", "plan": {}}, 10**18, 0)
+        rows = np.zeros(8, SAMPLE)
+        rows["seq"] = np.arange(1, 9)
+        record.add_samples(rows)
+        record.finish()
+    runs = RunFiles(tmp_path)
+    monkeypatch.setattr(run_index, "READING_S", 0.0)
+    assert [(run.who, run.samples) for run in runs.all()] == [("ann", None)] * 3
+    runs.read_ahead()
+    assert [run.samples for run in runs.all()] == [8] * 3
+    for path in paths:
+        path.with_suffix(".json").unlink()
+    runs.close()
+    runs.read_ahead()
+    assert [run.samples for run in runs.all()] == [8, None, None]  # the one that was in work
 
 
 def test_a_run_can_be_pinned_and_deleted(server: LiveServer, run: str) -> None:

@@ -36,11 +36,15 @@ class Served:
         assert self.http.post(f"{RIG}/commands", json={"command": "connect", "lease": token}).is_success
 
     @property
-    def gate(self) -> int:
-        """Its process."""
+    def gates(self) -> list[int]:
+        """The process that serves, and the one in reserve: the older first."""
         children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
-        gates = [int(pid) for pid in children if "gate.process" in Path(f"/proc/{pid}/cmdline").read_text()]
-        return gates[0] if gates else 0
+        return [int(pid) for pid in children if "gate.process" in Path(f"/proc/{pid}/cmdline").read_text()]
+
+    @property
+    def gate(self) -> int:
+        """The process that serves."""
+        return self.gates[0]
 
     @property
     def rig(self) -> int:
@@ -130,15 +134,24 @@ def test_an_orderly_end_closes_the_channels_without_a_word(tmp_path: Path) -> No
     assert (process.returncode, errors) == (0, "")
 
 
-def test_a_gate_that_is_killed_or_hangs_is_started_anew(served: Served) -> None:
-    for signal_ in (signal.SIGKILL, signal.SIGSTOP):
-        gate = served.gate
-        os.kill(gate, signal_)
-        until(lambda gate=gate: served.gate not in (0, gate))
+def test_a_gate_that_is_suspended_is_woken_and_one_that_is_killed_has_another_behind_it(served: Served) -> None:
+    def stops() -> bool:
         answer = served.http.post(f"{RIG}/estop")
-        assert (answer.status_code, answer.json()["state_after"]) == (200, "estopped")
-        assert until(lambda: served.http.get("/api/v1/health").json()["status"] == "ok")
-        assert not Path(f"/proc/{gate}").exists()
+        return (answer.status_code, answer.json()["state_after"]) == (200, "estopped")
+
+    first = served.gate
+    os.kill(first, signal.SIGTSTP)  # Ctrl-Z at the server's terminal is none of its business
+    os.kill(first, signal.SIGSTOP)
+    assert stops()
+    assert served.gate == first
+    spare = until(lambda: [pid for pid in served.gates if pid != first])
+    os.kill(first, signal.SIGKILL)
+    assert stops()
+    assert until(lambda: first not in served.gates)
+    assert served.gate == spare[0]
+    os.kill(spare[0], signal.SIGKILL)  # before there is another in reserve
+    assert stops()
+    assert until(lambda: served.http.get("/api/v1/health").json()["status"] == "ok")
 
 
 def test_idle_connections_take_nothing_from_a_stop(tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ show.
 """
 
 import dataclasses
-import math
 import random
 
 from hypothesis import HealthCheck, settings
@@ -130,7 +129,7 @@ class Model(LeaseModel):
         if shown is not None and proof is not None:
             token = LeaseToken(self.epoch + shown[0], self.sequence + shown[1], proof)
         shelf = None if shelved is None else Shelf(shelved[0], None, self.now, self.now + shelved[1], who)
-        made_ready = Given(binding, LOAD, MOVE, numbers, shelf)
+        made_ready = Given(binding, LOAD, MOVE, numbers, shelf=shelf)
         expected = self.command_refusal(command, token, made_ready)
         self.commander = who
         before = vars(self.machine).copy()
@@ -240,7 +239,11 @@ class Model(LeaseModel):
 
     @rule(severity=st.sampled_from(list(Severity)), code=st.sampled_from(["a", "b"]))
     def alarm(self, severity: Severity, code: str) -> None:
-        if severity is Severity.WARNING and self.now < self.shelves.get(code, -math.inf):
+        lasting = {shelved: until_s for shelved, until_s in self.shelves.items() if self.now < until_s}
+        self.revision += lasting != self.shelves
+        self.shelves = lasting
+        self.machine.end_shelves(self.now)
+        if severity is Severity.WARNING and code in self.shelves:
             before = [a for a in self.past.values() if a.shelved and a.code == code]
             if before:
                 expected = dataclasses.replace(before[-1], count=before[-1].count + 1, last_time_s=self.now)

@@ -19,10 +19,11 @@ def test_a_shelved_warning_is_history_and_does_not_stand_until_the_shelf_ends() 
         (False, 1, 0.0, None),
         (True, 3, 2.0, 99.9),
     ]
-    back = book.raised("late", WARNING, "", 100.0)
+    back = book.ended(100.0).raised("late", WARNING, "", 100.0)
     assert [a.code for a in back.standing] == ["late"]
-    assert back.ended(100.0).shelves == ()
+    assert back.shelves == ()
     assert book.ended(99.0) is book
+    assert book.ended(0.9).shelves == ()  # the clock was set back behind its beginning: more alarms, never fewer
 
 
 def test_a_shelf_is_of_one_frame_or_of_all() -> None:
@@ -62,7 +63,7 @@ def test_nothing_that_is_raised_is_lost(raised: list[tuple[str, Severity, bool]]
     """Counts add up to what was raised, shelved or not, acknowledged or not."""
     book = AlarmBook().shelve(Shelf("a", None, 0.0, 20.0, "anna"))
     for k, (code, severity, seen) in enumerate(raised):
-        book = book.raised(code, severity, "", float(k))
+        book = book.ended(float(k)).raised(code, severity, "", float(k))
         if seen:
             book = book.acknowledged("ben")
     assert sum(a.count for a in book.history) == len(raised)

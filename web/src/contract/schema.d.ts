@@ -3049,8 +3049,7 @@ export interface components {
          * @description The warning that is kept out of sight, for a time that ends. Nothing that brakes a rig can be shelved.
          */
         ShelfArgs: {
-            /** Code */
-            code: string;
+            code: components["schemas"]["WarningCode"];
             /**
              * Frame
              * @description null: of every frame
@@ -3836,6 +3835,12 @@ export interface components {
              */
             value: number;
         };
+        /**
+         * WarningCode
+         * @description All of them; some are of a fault too, where a tolerance has a second level.
+         * @enum {string}
+         */
+        WarningCode: "following_error" | "attitude_error" | "lateness" | "missed_deadlines" | "outside_range" | "stale_write" | "recorder_lost" | "record_error" | "disk_low" | "owner_silent" | "server_silent" | "live_source_lost" | "live_source_stale" | "live_bad" | "live_dropped" | "live_clock_steps" | "live_second_source" | "live_unproven" | "live_implausible_rate" | "preview_late";
     };
     responses: never;
     parameters: never;

@@ -18,7 +18,8 @@ from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.records import RunOut
 from fullpose_server.runtime.recording.export import write_export
 from fullpose_server.runtime.recording.mcap_reader import is_complete
-from fullpose_server.runtime.recording.run_index import RunInUseError, RunSummary
+from fullpose_server.runtime.recording.run_index import RunInUseError
+from fullpose_server.runtime.recording.run_summary import RunSummary
 from fullpose_server.session.run_end import RunEnd
 from fullpose_server.store.keyset import Key
 

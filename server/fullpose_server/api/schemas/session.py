@@ -11,6 +11,7 @@ from fullpose_server.api.schemas.base import Four, FrameName, Number, Options, O
 from fullpose_server.api.schemas.lease import LeaseOut, LeaseToken
 from fullpose_server.session.alarms import MAX_SHELF_S, Severity
 from fullpose_server.session.states import Command, State
+from fullpose_server.session.warning_codes import WarningCode
 
 
 class NoArgs(Wire):
@@ -67,7 +68,7 @@ class AcknowledgeArgs(Wire):
 class ShelfArgs(Wire):
     """The warning that is kept out of sight, for a time that ends. Nothing that brakes a rig can be shelved."""
 
-    code: Annotated[str, Field(min_length=1, max_length=64)]
+    code: WarningCode
     frame: FrameName | None = Field(default=None, description="null: of every frame")
     minutes: Number = Field(gt=0.0, le=MAX_SHELF_S / 60.0, description="How long; then it stands again when it returns")
     reason: str = Field(default="", max_length=200)

@@ -49,7 +49,11 @@ class Clock(Protocol):
         ...
 
     def wall_ns(self) -> int:
-        """Time since the Unix epoch [ns]."""
+        """Time since the Unix epoch [ns], as the machine's clock was set last."""
+        ...
+
+    def steady_ns(self) -> int:
+        """Time since the Unix epoch [ns], as it was when the process began, and what has passed: nobody sets it."""
         ...
 
     def sleep(self, seconds: float) -> None:
@@ -60,6 +64,9 @@ class Clock(Protocol):
 class SystemClock:
     """This machine's."""
 
+    def __init__(self) -> None:
+        self._began_ns = time.time_ns() - time.monotonic_ns()
+
     def monotonic_ns(self) -> int:
         """Time since some moment before the process began [ns]."""
         return time.monotonic_ns()
@@ -67,6 +74,10 @@ class SystemClock:
     def wall_ns(self) -> int:
         """Time since the Unix epoch [ns]."""
         return time.time_ns()
+
+    def steady_ns(self) -> int:
+        """Time since the Unix epoch [ns], by the monotonic clock from the process's beginning on."""
+        return self._began_ns + time.monotonic_ns()
 
     def sleep(self, seconds: float) -> None:
         """Wait for so long."""
@@ -78,12 +89,17 @@ class MadeUpClock:
 
     def __init__(self) -> None:
         self.now = 1_000_000_000_000
+        self.set_by = 0  # [ns] by how much somebody has set the wall clock
 
     def monotonic_ns(self) -> int:
         """Made up [ns]."""
         return self.now
 
     def wall_ns(self) -> int:
+        """Made up [ns]."""
+        return self.steady_ns() + self.set_by
+
+    def steady_ns(self) -> int:
         """Made up [ns]."""
         return 1_700_000_000_000_000_000 + self.now
 

@@ -189,7 +189,7 @@ class CommandHandler:
             case Command.GO_LIVE:
                 orders.check_inside(p.config.rig, p.motion)
             case Command.SHELVE | Command.UNSHELVE:
-                return GivenOf(shelf=orders.shelf_of(request.args, request.who, p.clock.wall_ns() / 1e9))
+                return GivenOf(shelf=orders.shelf_of(request.args, request.who, p.clock.steady_ns() / 1e9))
             case Command.ACKNOWLEDGE:
                 return GivenOf(alarms=orders.alarms_of(request.args), time_s=p.clock.wall_ns() / 1e9)
             case _:

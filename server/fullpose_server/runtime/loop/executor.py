@@ -17,7 +17,7 @@ from fullpose.rig import FRAMES
 from fullpose_server.drives.base import DriveError
 from fullpose_server.runtime.loop.clock import seconds
 from fullpose_server.runtime.loop.context import Parts
-from fullpose_server.runtime.loop.monitors import SOURCE_LOST, Monitors, Violation, said
+from fullpose_server.runtime.loop.monitors import Monitors, Violation, said
 from fullpose_server.runtime.loop.orders import Load
 from fullpose_server.runtime.motion.limit_guard import Finding
 from fullpose_server.runtime.motion.point_to_point import PointMove
@@ -25,6 +25,7 @@ from fullpose_server.session import actions
 from fullpose_server.session.alarms import Severity
 from fullpose_server.session.run_end import Ending, RunEnd
 from fullpose_server.session.states import IN_MOTION, Event, State
+from fullpose_server.session.warning_codes import WarningCode
 
 Order: TypeAlias = actions.Order[Load, PointMove]
 _NOISE = math.radians(0.01)  # beyond a limit that an encoder may read at rest on it
@@ -47,7 +48,7 @@ class Executor:
         if machine.state is not before:
             self._parts.log.add("transition", before=before, after=machine.state, trigger=str(event))
         if event is Event.SOURCE_LOST and machine.state is not before:
-            self.ends(Ending(RunEnd.SOURCE_LOST, SOURCE_LOST))
+            self.ends(Ending(RunEnd.SOURCE_LOST, WarningCode.LIVE_SOURCE_LOST))
         if event is Event.AT_REST:
             self.rest()
 
@@ -135,7 +136,7 @@ class Executor:
         for i in np.flatnonzero(outside > _NOISE):
             name, found, limit = FRAMES[i], math.degrees(measured[i]), math.degrees(pose[i])
             text = f"{name} frame found at {found:.6g} deg, beyond its limit of {limit:.6g} deg: it may only come back"
-            self.apply([Violation(Finding("outside_range", False, text, name, found, limit, "deg"))])
+            self.apply([Violation(Finding(WarningCode.OUTSIDE_RANGE, False, text, name, found, limit, "deg"))])
 
     def _power_off(self) -> None:
         """Disable the drive; from here on the command is where the table stands."""
@@ -199,7 +200,7 @@ class Executor:
     def alarm(self, code: str, severity: Severity, message: str, **evidence: Any) -> None:
         """Raise an alarm and log it."""
         p = self._parts
-        p.machine.end_shelves(p.clock.wall_ns() / 1e9)
+        p.machine.end_shelves(p.clock.steady_ns() / 1e9)
         raised = p.machine.alarm(code, severity, message, p.clock.wall_ns() / 1e9, **evidence)
         if raised.count == 1:
             if severity is not Severity.WARNING and p.state.run_id is None and p.state.ticks:

@@ -16,8 +16,8 @@ from fullpose_server.runtime.live.source import LiveView
 from fullpose_server.runtime.loop.watched_drive import DriveFailure
 from fullpose_server.runtime.motion.limit_guard import Finding, Guard
 from fullpose_server.session.states import Event
+from fullpose_server.session.warning_codes import WarningCode
 
-SOURCE_LOST = "live_source_lost"  # code of its warning
 # As plain numbers: flags make an object of every "and", and this is asked a thousand times a second.
 _LINK_LOST, _STALE_WRITE = int(Status.LINK_LOST), int(Status.STALE_WRITE)
 _BROKEN = int(Status.FAULT | Status.ENCODER | Status.WATCHDOG)
@@ -92,10 +92,10 @@ class Monitors:
         self._seen[key] = now
         return now - last > _RETURN_S
 
-    def _more(self, word: str, count: int) -> bool:
+    def _more(self, code: str, count: int) -> bool:
         """Whether a count has grown since it was last looked at; one that is smaller has begun anew."""
-        before = self._counted.get(word, 0)
-        self._counted[word] = count
+        before = self._counted.get(code, 0)
+        self._counted[code] = count
         return count > before
 
     def drive(self, seen: DriveView) -> list[Violation]:
@@ -120,7 +120,7 @@ class Monitors:
             text = f"drive {seen.name} was told to brake or power off: {why} (read reports {_words(status)})"
             return [said("drive_not_disabled", text, Event.FAULT)]
         if seen.enabled and status & _STALE_WRITE:
-            return [said("stale_write", f"drive {seen.name}: write: refused as an old command")]
+            return [said(WarningCode.STALE_WRITE, f"drive {seen.name}: write: refused as an old command")]
         return []
 
     def failed(self, failure: DriveFailure) -> Violation:
@@ -169,12 +169,12 @@ class Monitors:
         guard, tolerances = self._guard, self._config.guard
         found: list[Violation] = []
         if moving:
-            found += weighed(guard.scalar("lateness", lateness_ns / 1e6, tolerances.lateness_ms, "ms"))
+            found += weighed(guard.scalar(WarningCode.LATENESS, lateness_ns / 1e6, tolerances.lateness_ms, "ms"))
         if missed:
             self._misses = [t for t in self._misses if now - t < 1.0] + [now] * min(missed, 5000)
             if moving:
                 count = float(len(self._misses))
-                found += weighed(guard.scalar("missed_deadlines", count, tolerances.misses_per_s, "in 1 s"))
+                found += weighed(guard.scalar(WarningCode.MISSED_DEADLINES, count, tolerances.misses_per_s, "in 1 s"))
         return found
 
     def recorder(self, now: float, header: NDArray[np.void]) -> list[Violation]:
@@ -183,12 +183,12 @@ class Monitors:
         error = bytes(header["recorder_error"][0])
         free, least = int(header["recorder_free_bytes"][0]) / 1e6, self._config.min_free_mb
         if now - int(header["recorder_beat_ns"][0]) / 1e9 > _RECORDER_SILENT_S:
-            found.append(said("recorder_lost", "the recorder does not run"))
+            found.append(said(WarningCode.RECORDER_LOST, "the recorder does not run"))
         if error:
-            found.append(said("record_error", error.decode("utf-8", "replace")))
+            found.append(said(WarningCode.RECORD_ERROR, error.decode("utf-8", "replace")))
         if 0 < free < least:
             text = f"{free:.0f} MB free where runs are recorded"
-            found.append(Violation(Finding("disk_low", False, text, None, free, least, "MB")))
+            found.append(Violation(Finding(WarningCode.DISK_LOW, False, text, None, free, least, "MB")))
         return found
 
     def live(self, live: LiveView, *, lost: bool) -> list[Violation]:
@@ -196,26 +196,30 @@ class Monitors:
         found: list[Violation] = []
         if live.heard:
             stale: Tolerance = self._config.guard.stale_ms
-            found += weighed(self._guard.scalar("live_source_stale", live.age_ms, stale, "ms"))
+            found += weighed(self._guard.scalar(WarningCode.LIVE_SOURCE_STALE, live.age_ms, stale, "ms"))
         if live.plan_age_s > _PLAN_LATE_S:
             text = f"no way ahead from the planner for {live.plan_age_s:.1f} s: the step goes on without its foresight"
             age = live.plan_age_s * 1e3
-            found.append(Violation(Finding("preview_late", False, text, None, age, _PLAN_LATE_S * 1e3, "ms")))
+            found.append(Violation(Finding(WarningCode.PREVIEW_LATE, False, text, None, age, _PLAN_LATE_S * 1e3, "ms")))
+        unproven = "samples that do not prove to be of the source that was loaded: not used"
         second = "samples of a second live source, beside the one that is followed: not used"
-        for count, word, text in (
-            (live.bad, "bad", "samples of the live source are none: not used"),
-            (live.dropped, "dropped", "samples of the live source came late or twice: not used"),
-            (live.clock_steps, "clock_steps", "the live source began anew, or its clock was set"),
-            (live.strangers, "second_source", second),
-            (live.unproven, "unproven", "samples that do not prove to be of the source that was loaded: not used"),
+        for count, code, text in (
+            (live.bad, WarningCode.LIVE_BAD, "samples of the live source are none: not used"),
+            (live.dropped, WarningCode.LIVE_DROPPED, "samples of the live source came late or twice: not used"),
+            (live.clock_steps, WarningCode.LIVE_CLOCK_STEPS, "the live source began anew, or its clock was set"),
+            (live.strangers, WarningCode.LIVE_SECOND_SOURCE, second),
+            (live.unproven, WarningCode.LIVE_UNPROVEN, unproven),
         ):
-            if self._more(word, count):
-                found.append(said(f"live_{word}", text))
-        if self._more("implausible", live.implausible):
+            if self._more(code, count):
+                found.append(said(code, text))
+        if self._more(WarningCode.LIVE_IMPLAUSIBLE_RATE, live.implausible):
             text = f"a sample of the live source turns the body at {live.implausible_deg_s:.6g} deg/s: not used"
             value, limit = live.implausible_deg_s, live.plausible_deg_s
-            found.append(Violation(Finding("live_implausible_rate", False, text, None, value, limit, "deg/s")))
+            found.append(
+                Violation(Finding(WarningCode.LIVE_IMPLAUSIBLE_RATE, False, text, None, value, limit, "deg/s"))
+            )
         if lost:
             text = f"no sample of the live source for {live.age_ms:.0f} ms"
-            found.append(Violation(Finding(SOURCE_LOST, False, text, None, live.age_ms, math.nan, "ms")))
+            code = WarningCode.LIVE_SOURCE_LOST
+            found.append(Violation(Finding(code, False, text, None, live.age_ms, math.nan, "ms")))
         return found

@@ -28,6 +28,7 @@ from fullpose_server.session.alarms import Shelf
 from fullpose_server.session.binding import Binding
 from fullpose_server.session.errors import CodedError
 from fullpose_server.session.states import Command
+from fullpose_server.session.warning_codes import WarningCode
 
 
 class OrderError(CodedError):
@@ -71,7 +72,7 @@ def load_of(
     plan = _flyable(Path(folder))
     info = plan.info
     if args.get("plan_hash", info.plan_hash) != info.plan_hash:
-        text = f"{folder}/plan.json: plan_hash is {info.plan_hash[:16]}, not that of the plan that was made"
+        text = f"plan.json: plan_hash is {info.plan_hash[:16]}, not that of the plan that was made"
         raise OrderError("bad_plan", f"{text} ({args['plan_hash'][:16]}): make it again")
     _check_path(plan, rig)
     binding = Binding(info.plan_id, info.plan_hash, info.rig, info.rig_hash)
@@ -82,9 +83,9 @@ def _flyable(folder: Path) -> PlanFolder:
     try:
         plan = read_sealed_plan(folder)
     except PlanFolderError as cause:
-        raise OrderError("bad_plan", str(cause)) from cause
+        raise OrderError("bad_plan", cause.told) from cause
     if not plan.info.feasible:
-        raise OrderError("bad_plan", f"{folder}/plan.json: feasible is false: it cannot be flown")
+        raise OrderError("bad_plan", "plan.json: feasible is false: it cannot be flown")
     return plan
 
 
@@ -94,7 +95,7 @@ def check_stored(folder: Path | None, loaded: PlanInfo | None) -> None:
         return  # a live source
     changed = changed_since(loaded, _flyable(folder).info)
     if changed:
-        text = f"{folder}/plan.json: {', '.join(changed)} since the plan was loaded"
+        text = f"plan.json: {', '.join(changed)} since the plan was loaded"
         raise OrderError("bad_plan", f"{text}: unload it, and load it again")
 
 
@@ -193,15 +194,15 @@ def _four(args: dict[str, Any], name: str) -> np.ndarray[Any, np.dtype[np.float6
     return np.array(value, float)
 
 
-def shelf_of(args: dict[str, Any], who: str, wall_s: float) -> Shelf:
-    """What `shelve` puts up, from `wall_s` [s, Unix] on, and `unshelve` takes away. Raises `OrderError`."""
+def shelf_of(args: dict[str, Any], who: str, now_s: float) -> Shelf:
+    """What `shelve` puts up, from `now_s` [s, Unix] on, and `unshelve` takes away. Raises `OrderError`."""
     code, frame, minutes = args.get("code"), args.get("frame"), args.get("minutes", 1.0)
-    if not isinstance(code, str) or not code:
-        raise OrderError("bad_arguments", "code must be that of a warning, such as live_source_stale")
+    if code not in list(WarningCode):
+        raise OrderError("bad_arguments", f"code {code!r}: expected that of a warning, one of {', '.join(WarningCode)}")
     if frame is not None and frame not in FRAMES:
         raise OrderError("bad_arguments", f"frame must be one of {', '.join(FRAMES)}, or left out for all")
     try:
-        return Shelf(code, frame, wall_s, wall_s + 60.0 * float(minutes), who, str(args.get("reason", "")))
+        return Shelf(str(code), frame, now_s, now_s + 60.0 * float(minutes), who, str(args.get("reason", "")))
     except (TypeError, ValueError) as cause:
         raise OrderError("bad_arguments", f"minutes = {minutes!r}: {cause}") from cause
 

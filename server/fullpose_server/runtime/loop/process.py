@@ -19,6 +19,7 @@ import numpy as np
 from fullpose_server.drives import registry
 from fullpose_server.drives.base import Drive, DriveError
 from fullpose_server.formats.plan_folder import rig_hash
+from fullpose_server.processes import call_itself
 from fullpose_server.runtime.contract import config
 from fullpose_server.runtime.contract.drive_call import EXIT_HANGS
 from fullpose_server.runtime.contract.rig_paths import RigPaths
@@ -68,6 +69,7 @@ def main() -> int:
     given = arguments.parse_args()
     if not given.spare:
         return run(given.config, None)
+    call_itself(f"fullpose rig process in reserve ({__spec__.name})")
     spare = WaitingRecorder()
     prewarm.any_rig()
     told = sys.stdin.readline().strip()  # nothing: the server is gone
@@ -77,6 +79,7 @@ def main() -> int:
 def run(file: Path, waiting: WaitingRecorder | None) -> int:
     """Run the rig whose configuration is in `file`; returns the exit status."""
     settings = config.decode(file.read_bytes())
+    call_itself(f"fullpose rig {settings.name} ({__spec__.name})")
     if waiting is not None:
         _write_to(RigPaths(settings.directory).log)
     logging.basicConfig(format="%(asctime)s %(message)s", level=logging.INFO)

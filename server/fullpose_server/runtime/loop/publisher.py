@@ -70,7 +70,7 @@ class Publisher:
             plan=ref,
             alarms=list(machine.alarms.standing),
             history=list(machine.alarms.history[-64:]),
-            shelves=[s for s in machine.alarms.shelves if p.clock.wall_ns() / 1e9 < s.until_s],
+            shelves=[s for s in machine.alarms.shelves if s.lasts(p.clock.steady_ns() / 1e9)],
             realtime=p.realtime,
             run_id=p.state.run_id,
             drive=p.drive.name,

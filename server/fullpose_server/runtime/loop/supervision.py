@@ -9,6 +9,7 @@ from fullpose_server.runtime.loop.monitors import DriveView, Monitors, Violation
 from fullpose_server.runtime.motion.generator import Mode
 from fullpose_server.session.machine import Silence
 from fullpose_server.session.states import IN_MOTION, Event, State
+from fullpose_server.session.warning_codes import WarningCode
 
 _SLOWLY = 16  # ticks between two looks at what changes slowly: people, and the recorder
 
@@ -55,7 +56,7 @@ class Supervision:
         if self._parts.state.ticks % _SLOWLY or (machine.state not in IN_MOTION and machine.state is not State.ARMED):
             return
         for event in machine.silence(now):
-            yield Silent("owner_silent", "the lease's holder is silent", event)
+            yield Silent(WarningCode.OWNER_SILENT, "the lease's holder is silent", event)
         beat = int(self._parts.shared.header["server_beat_ns"][0]) / 1e9
         for event in self._server_silence.due(now - beat):
-            yield Silent("server_silent", "the server is silent", event)
+            yield Silent(WarningCode.SERVER_SILENT, "the server is silent", event)

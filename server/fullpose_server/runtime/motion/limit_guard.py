@@ -18,6 +18,7 @@ from fullpose.rig import FRAMES, Rig
 from fullpose_server.runtime.contract.config import GuardConfig, Tolerance
 from fullpose_server.runtime.motion.braking import stopping_distance
 from fullpose_server.runtime.motion.path_player import attitude_error
+from fullpose_server.session.warning_codes import WarningCode
 
 FINITE, STEP, POSITION, RATE, ACCELERATION, BRAKING = range(1, 7)
 CHECKS = ("", "finite", "step", "position", "rate", "acceleration", "braking")
@@ -147,9 +148,11 @@ class Guard:
         found = []
         if not (largest <= self._warn and largest <= self._trip):
             tolerance = self._config.following_deg
-            found.append(self.scalar("following_error", math.degrees(largest), tolerance, "deg", FRAMES[frame]))
+            found.append(
+                self.scalar(WarningCode.FOLLOWING_ERROR, math.degrees(largest), tolerance, "deg", FRAMES[frame])
+            )
         if not math.isnan(error):
-            found.append(self.scalar("attitude_error", math.degrees(error), self._config.attitude_deg))
+            found.append(self.scalar(WarningCode.ATTITUDE_ERROR, math.degrees(error), self._config.attitude_deg))
         return error, [each for each in found if each is not None]
 
     def scalar(

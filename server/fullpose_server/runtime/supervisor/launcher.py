@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 from fullpose_server.formats import durable
+from fullpose_server.processes import START_S
 from fullpose_server.runtime.contract import config as configs
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.hung import suspended
@@ -17,7 +18,6 @@ from fullpose_server.runtime.supervisor.errors import HostError
 from fullpose_server.runtime.supervisor.spare import Spare
 from fullpose_server.runtime.supervisor.spawn import spawned
 
-START_S = 180.0  # with no kernel in the cache, compiling takes most of it
 _ORDERS_S = 60.0  # for the one in reserve to take its orders: on a starved machine it is long in getting ready
 
 log = logging.getLogger(__name__)

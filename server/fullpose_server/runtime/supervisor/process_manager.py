@@ -14,6 +14,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+from fullpose_server.processes import START_S, how_it_ended, memory_kills
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.contract.drive_call import HANGS
@@ -23,7 +24,7 @@ from fullpose_server.runtime.contract.shared_memory import Shared, SharedError
 from fullpose_server.runtime.supervisor.control_link import StandingLink
 from fullpose_server.runtime.supervisor.errors import HostError, RigUnreachableError
 from fullpose_server.runtime.supervisor.heartbeat import Heartbeat
-from fullpose_server.runtime.supervisor.launcher import START_S, Launcher
+from fullpose_server.runtime.supervisor.launcher import Launcher
 from fullpose_server.runtime.supervisor.process_view import ProcessView
 from fullpose_server.runtime.supervisor.running import RunningProcess, RunningProcesses
 from fullpose_server.runtime.supervisor.spare import Spare
@@ -62,6 +63,7 @@ class ProcessManager:
         self._respawned: list[float] = []
         self._hung = Hung(_HUNG_LOOKS, _PATIENT_LOOKS)
         self._killed = ""  # why, where we did it
+        self._memory_kills = 0  # of the system, up to the newest process's beginning
         self._refused = ""  # why no other could be started in its place
         self._watch: asyncio.Task[None] | None = None
         self._heartbeat: Heartbeat | None = None
@@ -141,6 +143,7 @@ class ProcessManager:
         shared.header["server_beat_ns"] = time.monotonic_ns()
         asyncio.get_running_loop().add_reader(self._pidfd, self._died)
         self._view.attach(pid, shared)
+        self._memory_kills = memory_kills()
         self._running.came(RunningProcess(self._config.name, pid, self._paths.memory()))
 
     async def _detach(self) -> None:
@@ -228,7 +231,9 @@ class ProcessManager:
             return
         self._respawned.append(now)
         last = self._view.published()
-        lost = _loss(last, self._launcher.status(self._view.pid), self._killed)
+        code = self._launcher.status(self._view.pid)
+        how = "" if code is None else f" ({how_it_ended(code, self._memory_kills, memory_kills())})"
+        lost = _loss(last, how, self._killed)
         self._killed = ""
         await self._detach()
         pid = self._paths.running()  # one that came up and could not be reached
@@ -238,14 +243,8 @@ class ProcessManager:
         self._refused = ""
 
 
-def _loss(last: messages.Published, code: int | None, killed: str) -> str:
-    """What is said of a process that died; `code` is how, where that is known (negative: by that signal).
-
-    `killed` is why we did it, where we did.
-    """
-    how = ""
-    if code is not None:
-        how = f" (signal {-code})" if code < 0 else f" (exit status {code})"
+def _loss(last: messages.Published, how: str, killed: str) -> str:
+    """What is said of a process that died; `how`, where that is known; `killed` is why we did it, where we did."""
     why = killed or "".join(f" ({a.message})" for a in last.alarms if a.code in (messages.INTERNAL_ERROR, HANGS))
     return f"the rig process died{how}{why} while {last.state}; the drive brakes by its own watchdog"
 

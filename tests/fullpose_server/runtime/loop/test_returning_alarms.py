@@ -90,10 +90,12 @@ def test_a_shelf_is_taken_away(rig: MadeUpRig) -> None:
 @pytest.mark.parametrize(
     ("args", "told"),
     [
-        ({}, "code must be"),
-        ({"code": "x", "frame": "middle-left"}, "frame must be one of base"),
-        ({"code": "x", "minutes": 1e9}, "expected above 0"),
-        ({"code": "x", "minutes": "long"}, "minutes = 'long'"),
+        ({}, "expected that of a warning, one of following_error"),
+        ({"code": "live_source_losst"}, "'live_source_losst': expected that of a warning"),
+        ({"code": "drive_fault"}, "'drive_fault': expected that of a warning"),
+        ({"code": "lateness", "frame": "middle-left"}, "frame must be one of base"),
+        ({"code": "lateness", "minutes": 1e9}, "expected above 0"),
+        ({"code": "lateness", "minutes": "long"}, "minutes = 'long'"),
     ],
 )
 def test_a_shelf_that_cannot_be_changes_nothing(rig: MadeUpRig, args: dict[str, object], told: str) -> None:
@@ -103,3 +105,11 @@ def test_a_shelf_that_cannot_be_changes_nothing(rig: MadeUpRig, args: dict[str, 
     assert reply.error is not None
     assert told in reply.error.message
     assert rig.parts.machine.alarms is before
+
+
+def test_a_clock_that_is_set_back_prolongs_no_shelf(rig: MadeUpRig) -> None:
+    rig.must("shelve", code="live_source_lost", minutes=0.1)
+    rig.clock.set_by = -3_600_000_000_000
+    rig.run(6.5)
+    lose_the_source(rig)
+    assert "live_source_lost" in standing(rig)

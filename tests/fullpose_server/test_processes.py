@@ -1,0 +1,36 @@
+"""How a process ended, in words."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fullpose_server.processes import how_it_ended, memory_kills
+
+
+def test_an_end_for_lack_of_memory_is_named_as_what_it_may_be() -> None:
+    assert how_it_ended(3, 0, 1) == "exit status 3"
+    assert how_it_ended(-9, 4, 4) == "signal 9"
+    assert how_it_ended(-9, 4, 5) == "signal 9, and the system has killed for lack of memory meanwhile"
+    assert how_it_ended(-11, 4, 5) == "signal 11"
+
+
+def test_the_system_counts_what_it_has_killed(tmp_path: Path) -> None:
+    counters = tmp_path / "vmstat"
+    counters.write_text("pgfault 12\noom_kill 7\noom_kill_extra 9\n")
+    assert memory_kills(counters) == 7
+    counters.write_text("pgfault 12\n")
+    assert memory_kills(counters) == 0
+    assert memory_kills(tmp_path / "none") == 0
+    assert memory_kills() >= 0
+
+
+@pytest.mark.parametrize("title", ["rig one", "rig " + "x" * 4000])
+def test_a_process_says_what_it_is(title: str) -> None:
+    told = "import os, sys; from fullpose_server.processes import call_itself; call_itself(sys.argv[1] or sys.argv[2]);"
+    told += "print(open('/proc/self/cmdline').read(), os.environ['PATH'], sep='|')"
+    ran = subprocess.run([sys.executable, "-c", told, "", title], capture_output=True, text=True, check=True)
+    shown, _, path = ran.stdout.rstrip("\n").partition("|")
+    assert shown.rstrip("\0") == title
+    assert path  # nothing else was written over
