@@ -56,6 +56,8 @@ def install(app: FastAPI) -> None:
                 listed = ", ".join(methods)
                 refusal = ApiError(405, "method", f"{request.method} {request.url.path}: expected {listed}")
                 return problem_response(refusal.problem, request, {"Allow": listed})
+            if error.status_code == 405:  # by the console, which takes what is nothing of the API for a page
+                return problem_response(ApiError(404, "http", "Not Found").problem, request)
         return problem_response(problem_of(error), request, error.headers if isinstance(error, ApiError) else None)
 
     for kind in (ApiError, HTTPException, RequestValidationError, ServerError, SolverError, OSError):

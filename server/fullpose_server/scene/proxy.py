@@ -28,6 +28,7 @@ router = APIRouter(include_in_schema=False)
 # about drawing without a graphics card, which the console gives in its own words.
 HIDE_CHROME = b"<style>.mantine-Paper-root,#webgl-software-rendering{display:none!important}</style>"
 PASSED_BACK = ("content-type", "cache-control", "etag", "last-modified")
+LONGEST, LONGEST_PART = 1024, 255  # [bytes] of a path in a scene: viser takes it for a file, and fails at a longer one
 QUEUE = 8  # messages held for a slow browser; behind them, TCP makes viser itself wait and merge
 MESSAGE_BYTES = 64 * 1024 * 1024
 
@@ -75,6 +76,8 @@ async def page(request: Request, rig: str, path: str) -> Response:
     address = _address(request, rig)
     if address is None:
         return PlainTextResponse(f"no scene {rig!r} is running\n", status_code=404)
+    if len(path.encode()) > LONGEST or any(len(part.encode()) > LONGEST_PART for part in path.split("/")):
+        return PlainTextResponse("nothing of a scene has so long a name\n", status_code=404)
     if _foreign(request):
         return PlainTextResponse("a scene is shown from this server only\n", status_code=400)
     try:

@@ -166,6 +166,7 @@ def test_a_form_s_unknown_and_doubled_fields_are_refused(server: LiveServer, fie
 def test_a_method_that_a_path_does_not_take(server: LiveServer, method: str, path: str, allowed: str) -> None:
     answer = server.http.request(method, path)
     refused(answer, 405, "method")
+    refused(server.http.delete("/trajectories/..%2F..%2Fetc"), 404, "http")  # and not 405 without an Allow
     assert answer.headers["allow"] == allowed
 
 

@@ -34,6 +34,8 @@ def test_slash_is_added_and_the_query_kept(served: Served) -> None:
     [
         ("/scene/nowhere/", 404),
         ("/scene/vertical-4/no-such-file", 404),
+        ("/scene/vertical-4/" + "a" * 3000, 404),
+        ("/scene/vertical-4/" + "a/" * 3000, 404),
         ("/scene/vertical-4/..%2f..%2f_viser.py", 404),
         ("/scene/vertical-4/?websocket=ws://elsewhere.example/", 400),
         ("/scene/vertical-4/?playbackPath=https://elsewhere.example/scene.viser", 400),

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from fullpose_server.runtime.contract.drive_call import PATIENT, pending
 from fullpose_server.session.states import IN_MOTION
 
+_RECORDER_SILENT_NS, _RECORDER_LATE_NS = 1_000_000_000, 8_000_000_000
+_ENDED = frozenset({"", "Z", "X", "T", "t"})  # proc(5): none, a zombie, dead, suspended, traced
 SILENT_NS = 150_000_000  # a sign of life older than this: the loop does not respond
 _CODES = frozenset(state.code for state in IN_MOTION)
 
@@ -22,13 +24,28 @@ def is_silent(header: NDArray[Any], now_ns: int) -> bool:
     return now_ns - int(header["rig_beat_ns"][0]) > SILENT_NS
 
 
+def recorder_lost(header: NDArray[Any], now_ns: int) -> bool:
+    """Whether the recorder records no more: silent for a second, and gone or held by the system; or silent for long.
+
+    One that is alive is only late: the ring keeps sixteen seconds for it at 2 kHz.
+    """
+    silent_ns = now_ns - int(header["recorder_beat_ns"][0])
+    if silent_ns < _RECORDER_SILENT_NS:
+        return False
+    return silent_ns > _RECORDER_LATE_NS or _state_of(int(header["recorder_pid"][0])) in _ENDED
+
+
 def suspended(pid: int) -> bool:
     """Whether the system holds the process."""
+    return _state_of(pid) in ("T", "t")
+
+
+def _state_of(pid: int) -> str:
+    """One letter, as proc(5) has it; empty: there is no such process."""
     try:
-        state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
     except (OSError, IndexError):
-        return False
-    return state in ("T", "t")
+        return ""
 
 
 class Hung:

@@ -12,6 +12,7 @@ from fullpose.rig import FRAMES
 from fullpose_server.drives.base import Status
 from fullpose_server.drives.response_monitor import DriveResponseMonitor
 from fullpose_server.runtime.contract.config import RigConfig, Tolerance
+from fullpose_server.runtime.contract.hung import recorder_lost
 from fullpose_server.runtime.live.source import LiveView
 from fullpose_server.runtime.loop.watched_drive import DriveFailure
 from fullpose_server.runtime.motion.limit_guard import Finding, Guard
@@ -21,7 +22,6 @@ from fullpose_server.session.warning_codes import WarningCode
 # As plain numbers: flags make an object of every "and", and this is asked a thousand times a second.
 _LINK_LOST, _STALE_WRITE = int(Status.LINK_LOST), int(Status.STALE_WRITE)
 _BROKEN = int(Status.FAULT | Status.ENCODER | Status.WATCHDOG)
-_RECORDER_SILENT_S = 1.0
 _AT_REST = math.radians(0.5)  # [rad/s] a table slower than this that brakes by itself counts as stopped
 _BRAKE_TIMEOUT_S = 5.0
 _ORDER_S = 0.2  # for an order to reach the drive: the first move after arming is not far yet
@@ -182,7 +182,7 @@ class Monitors:
         found = []
         error = bytes(header["recorder_error"][0])
         free, least = int(header["recorder_free_bytes"][0]) / 1e6, self._config.min_free_mb
-        if now - int(header["recorder_beat_ns"][0]) / 1e9 > _RECORDER_SILENT_S:
+        if recorder_lost(header, round(now * 1e9)):
             found.append(said(WarningCode.RECORDER_LOST, "the recorder does not run"))
         if error:
             found.append(said(WarningCode.RECORD_ERROR, error.decode("utf-8", "replace")))

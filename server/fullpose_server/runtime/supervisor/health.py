@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from fullpose_server.runtime.contract import messages
 from fullpose_server.runtime.contract.drive_call import pending
-from fullpose_server.runtime.contract.hung import is_silent
+from fullpose_server.runtime.contract.hung import is_silent, recorder_lost
 from fullpose_server.runtime.contract.shared_memory import Shared
 
 
@@ -21,7 +21,6 @@ def health_of(
 ) -> messages.Health:
     """Health as of now, of the process `pid` and its recorder."""
     header = memory.header
-    recorder_age = (time.monotonic_ns() - int(header["recorder_beat_ns"][0])) / 1e9
     return messages.Health(
         realtime=published.realtime,
         rate_hz=rate_hz,
@@ -33,7 +32,7 @@ def health_of(
         rig_pid=pid,
         heartbeat_age_s=beat_age_s(memory),
         recorder=messages.RecorderHealth(
-            alive=recorder_age < 1.0,
+            alive=not recorder_lost(header, time.monotonic_ns()),
             run=_text(header["recorder_run"][0]),
             lost=int(header["recorder_lost"][0]),
             lag=max(0, int(header["head"][0]) - int(header["recorder_seq"][0])),

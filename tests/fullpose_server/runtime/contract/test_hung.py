@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from fullpose_server.runtime.contract.drive_call import DriveCall, hanging, pending
-from fullpose_server.runtime.contract.hung import SILENT_NS, Hung, suspended
+from fullpose_server.runtime.contract.hung import SILENT_NS, Hung, recorder_lost, suspended
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.session.states import State
 from tests.support.waiting import until
@@ -72,3 +72,18 @@ def test_what_is_said_names_drive_call_and_since_when(shared: Shared) -> None:
     assert call is not None
     said = hanging("acme", call, 2_120_000_000, 1_700_000_000_120_000_000)
     assert said == "drive acme: write has not returned for 120 ms, since 22:13:20.000000 UTC"
+
+
+def test_a_recorder_that_is_late_is_not_lost_and_one_that_has_ended_or_is_held_is(shared: Shared) -> None:
+    second = 1_000_000_000
+    shared.header["recorder_pid"] = os.getpid()
+    assert [recorder_lost(shared.header, at * second) for at in (0, 2, 7, 9)] == [False, False, False, True]
+    child = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    shared.header["recorder_pid"] = child.pid
+    child.send_signal(signal.SIGSTOP)
+    assert until(lambda: recorder_lost(shared.header, 2 * second))
+    child.send_signal(signal.SIGCONT)
+    assert until(lambda: not recorder_lost(shared.header, 2 * second))
+    child.communicate(b"\n")
+    assert recorder_lost(shared.header, 2 * second)
+    assert not recorder_lost(shared.header, second // 2)
