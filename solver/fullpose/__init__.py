@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fullpose.compare import compare
     from fullpose.errors import CancelledError, InputError, MethodError, RigError, SolverError
     from fullpose.plan import Plan, PlanOptions, PreviewOptions, plan
-    from fullpose.recorded import diagnose
+    from fullpose.recorded import diagnose, smooth
     from fullpose.registry import method_names, method_options
     from fullpose.resample import resample
     from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
@@ -41,7 +41,7 @@ _HOMES = {
     "compare": ("compare",),
     "errors": ("CancelledError", "InputError", "MethodError", "RigError", "SolverError"),
     "plan": ("Plan", "PlanOptions", "PreviewOptions", "plan"),
-    "recorded": ("diagnose",),
+    "recorded": ("diagnose", "smooth"),
     "registry": ("method_names", "method_options"),
     "resample": ("resample",),
     "rig": ("FrameLimits", "Geometry", "Rig", "builtin_rigs"),
@@ -81,6 +81,7 @@ __all__ = [
     "quaternion_from_euler",
     "quaternion_from_ned",
     "resample",
+    "smooth",
     "solve",
     "verify",
 ]

@@ -1,5 +1,7 @@
-"""Recorded flights: what a log of attitudes is made of and what is wrong with it (mathematics, section 13)."""
+"""Recorded flights: what a log of attitudes is made of, what is wrong with it, and the attitude behind it (mathematics,
+section 13)."""
 
 from fullpose.recorded.diagnosis import Diagnosis, diagnose
+from fullpose.recorded.tube import Smoothed, smooth
 
-__all__ = ["Diagnosis", "diagnose"]
+__all__ = ["Diagnosis", "Smoothed", "diagnose", "smooth"]

@@ -66,7 +66,12 @@ def _regular(
     mask = np.ones(time.size, np.bool_)
     mask[begins] = False
     rest = length > 2.0 * mean + 1.0  # the flight rests here: what it repeats is true
-    _mark(mask, start[rest] + round(mean), start[rest] + length[rest], value=False)
+    hold = round(mean)
+    _mark(mask, start[rest] + hold, start[rest] + length[rest], value=False)
+    if begins[1] > 2.0 * mean + 1.0:  # it begins at rest: true until one hold before it moves
+        mask[: begins[1] - hold + 1] = False
+    if time.size - begins[-1] > 2.0 * mean + 1.0:  # it ends at rest
+        mask[begins[-1] + hold :] = False
     span = float(np.sum((time[start + length] - time[start])[usual]))
     return Held(mask, mean, int(np.count_nonzero(usual)) / span)
 
