@@ -163,7 +163,7 @@ def test_a_killed_recorder_loses_no_more_than_a_chunk_and_is_replaced_at_rest(tm
 
 def test_a_stopped_rig_process_is_said_and_brakes_when_it_wakes(tmp_path: Path) -> None:
     async def fly() -> None:
-        config = config_of(tmp_path)
+        config = config_of(tmp_path, drive_options={"watchdog_s": 0.05})
         plan = written(tmp_path / "plan", plan_of(config.rig, 6.0))
         async with hosted(config) as (host, operator):
             await operator.fly(plan)

@@ -170,7 +170,8 @@ class Runner:
         job = running.job
         try:
             request = await _to_its_end(job.begin)
-            if request is None:
+            if request is None:  # it had ended while it waited: who cancels it meanwhile has cancelled nothing
+                running.cancelled = False
                 return None
             outcome = await self._made(running, {"kind": job.kind, "request": request})
         except Exception as fault:

@@ -43,6 +43,7 @@ class Made:
         self.may_write.set()
         self.may_begin.set()
         self.finished_while_beginning = False
+        self.already_ended = False
         self._do, self._refusal = do, refusal
         self._loop = asyncio.get_running_loop()
 
@@ -50,7 +51,7 @@ class Made:
         self.beginning.set()
         assert self.may_begin.wait(60.0)
         self.begun = True
-        return {"do": self._do}
+        return None if self.already_ended else {"do": self._do}
 
     def finish(self, outcome: Outcome) -> None:
         self.writing.set()
@@ -214,6 +215,22 @@ def test_its_end_is_not_written_while_its_beginning_is() -> None:
         await closing
         assert [outcome.status for outcome in job.outcomes] == [JobStatus.INTERRUPTED]
         assert not job.finished_while_beginning
+
+    run(work)
+
+
+def test_who_cancels_what_had_ended_before_it_was_begun_has_cancelled_nothing() -> None:
+    async def work(runner: Runner) -> None:
+        job = Made("job")
+        job.already_ended = True
+        job.may_begin.clear()
+        runner.submit(job)
+        await asyncio.to_thread(job.beginning.wait, 60.0)
+        cancelling = asyncio.create_task(runner.cancel("job"))
+        await asyncio.sleep(0)
+        job.may_begin.set()
+        assert not await cancelling
+        assert job.outcomes == []
 
     run(work)
 

@@ -48,6 +48,7 @@ def plan_of(
     return make_plan(PlanOrigin(plan_id, "0" * 64, "test"), rig, rate_hz, path, feasible=True)
 
 
+PATIENT_WATCHDOG_S = 5.0  # for so long a starved machine may keep the rig process from writing
 LIVE_KEY = "the key of the live source"
 
 
@@ -176,7 +177,9 @@ def codes_of(alarms: Sequence[Alarm]) -> list[str]:
 
 
 def config_of(tmp: Path, rig: str = "vertical-limited", **changes: Any) -> RigConfig:
-    """A rig process's settings under `tmp`."""
+    """A rig process's settings under `tmp`; its simulated table is as patient as its guard."""
+    if changes.get("drive", "simulated") == "simulated":
+        changes["drive_options"] = {"watchdog_s": PATIENT_WATCHDOG_S, **changes.get("drive_options", {})}
     settings: dict[str, Any] = {
         "realtime_priority": 40,
         "min_free_mb": 1.0,
