@@ -1,4 +1,4 @@
-"""What hostile or careless clients do to a server: each until its stdin ends.
+"""What hostile or careless clients do to a server: each until its stdin ends; the first line says that it begins.
 
 `python -m bench.realtime.attacks NAME --port P --data FOLDER`; `NAMES` has the names.
 """
@@ -105,10 +105,10 @@ def locked_database(attack: Attack) -> None:
     def lock(_: int) -> None:
         link = sqlite3.connect(attack.data / "fullpose.db", isolation_level=None, timeout=60)
         link.execute("BEGIN EXCLUSIVE")
+        attack.count("locked")
         attack.over.wait(LOCK_S)
         link.execute("ROLLBACK")
         link.close()
-        attack.count("locked for 30 s")
 
     attack.in_threads(lock, 1)
 
@@ -193,6 +193,7 @@ def main() -> None:
         attack.over.set()
 
     threading.Thread(target=until_stdin_ends, daemon=True).start()
+    print(f"# {given.name} begins", flush=True)
     NAMES[given.name](attack)
     print(f"# {given.name}: {attack.told()}", flush=True)
 

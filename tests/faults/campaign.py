@@ -1,19 +1,22 @@
 """A campaign of faults: random kills, stops, full disks and damaged files, in random states of a real rig and server.
 
-    python -m tests.faults.campaign [--count 300] [--seed 1] [--only ROUND]
+    python -m tests.faults.campaign [--count 300] [--seed 1] [--only ROUND] [--json FILE]
 
 After each: the server is up, the rig can be flown again, every row that was recorded is inside the limits, and what was
-recorded lacks no more than the last chunk. A round that fails is named, and `--only` repeats its fault in its state.
+recorded lacks no more than the last chunk. A round that fails is named, and the others go on;
+`--only` repeats its fault in its state.
 """
 
 import argparse
+import json
 import os
 import random
 import signal
 import sys
 import tempfile
 import time
-from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
 from enum import StrEnum
 from pathlib import Path
 
@@ -165,19 +168,47 @@ class Round:
             until(lambda: lab.server.http.get(f"/rigs/{NAME}").status_code == 200)
 
 
-def rounds(lab: Laboratory, seed: int, numbers: range | list[int]) -> Counter[str]:
-    """Run them one after the other; how often each fault was done. Raises `AssertionError` with the round's name."""
-    done: Counter[str] = Counter()
+@dataclass(frozen=True)
+class Done:
+    """What became of a round."""
+
+    number: int
+    fault: str
+    state: str
+    took_s: float
+    failed: str | None
+
+
+def rounds(lab: Laboratory, seed: int, numbers: range | list[int]) -> Iterator[Done]:
+    """Run them one after the other; one that fails says so, and the next begins with what it has left."""
     for number in numbers:
-        one = Round(lab, seed, number)
-        began = time.monotonic()
+        one, began = Round(lab, seed, number), time.monotonic()
+        failed = None
         try:
             one.run()
         except (AssertionError, httpx.HTTPError, OSError) as error:
-            raise AssertionError(f"{one} (seed {seed}): {error}") from error
-        print(f"{one}: {time.monotonic() - began:.1f} s", file=sys.stderr, flush=True)
-        done[one.fault] += 1
-    return done
+            failed = f"{one} (seed {seed}): {type(error).__name__}: {error}"
+        took_s = time.monotonic() - began
+        print(f"{one}: {took_s:.1f} s{'' if failed is None else ', FAILED: ' + failed}", file=sys.stderr, flush=True)
+        yield Done(number, one.fault.value, one.state, took_s, failed)
+
+
+def table(done: Sequence[Done]) -> str:
+    """A line a fault, and what failed."""
+    lines = [f"{'fault':24s} {'times':>6s} {'failed':>7s} {'median s':>9s} {'longest s':>10s}"]
+    for fault in Fault:
+        of = [one for one in done if one.fault == fault]
+        if of:
+            took = sorted(one.took_s for one in of)
+            failed = sum(one.failed is not None for one in of)
+            lines.append(f"{fault:24s} {len(of):6d} {failed:7d} {took[len(took) // 2]:9.1f} {took[-1]:10.1f}")
+    failures = [one.failed for one in done if one.failed is not None]
+    lines.append(f"{'in all':24s} {len(done):6d} {len(failures):7d}")
+    if not failures:
+        lines.append(
+            "limits kept in every recorded row, the server up again, nothing recorded lost beyond the last chunk"
+        )
+    return "\n".join([*lines, *failures])
 
 
 def main() -> None:
@@ -186,6 +217,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int, help="the number of one round")
+    parser.add_argument("--json", type=Path)
     asked = parser.parse_args()
     numbers = range(asked.count) if asked.only is None else [asked.only]
     with (
@@ -193,10 +225,14 @@ def main() -> None:
         small_disk(Path(folder) / "disk", DISK_KB) as data,
         Laboratory(data) as lab,
     ):
-        done = rounds(lab, asked.seed, numbers)
-    for fault, times in sorted(done.items()):
-        print(f"{times:4d}  {fault}")
-    print(f"{done.total():4d}  in all: limits kept, the server up again, nothing recorded lost beyond the last chunk")
+        done = []
+        for one in rounds(lab, asked.seed, numbers):
+            done.append(one)
+            if asked.json is not None:
+                told = {"seed": asked.seed, "asked": len(numbers), "rounds": [asdict(each) for each in done]}
+                asked.json.write_text(json.dumps(told, indent=1), encoding="utf-8")
+    print(table(done))
+    sys.exit(any(one.failed is not None for one in done))
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ class LiveServer:
         self.settings = settings
         self.url = f"http://127.0.0.1:{port}"
         self.ws = f"ws://127.0.0.1:{port}/api/v1"
-        self.http = httpx.Client(base_url=f"{self.url}/api/v1", timeout=60.0, headers={"X-Fullpose-Client": "ann"})
+        self.http = httpx.Client(base_url=f"{self.url}/api/v1", timeout=300.0, headers={"X-Fullpose-Client": "ann"})
         self.sequence = 0
 
     def upload(self, text: str | bytes = FLIGHT, file: str = "flight.csv", **fields: str) -> httpx.Response:

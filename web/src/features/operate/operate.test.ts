@@ -160,4 +160,13 @@ describe("alarms", () => {
     await fireEvent.click(screen.getByRole("button", { name: /Rig process/ }));
     expect(screen.getByText("not answering")).toBeTruthy();
   });
+
+  it("tell how long the drive takes, and the call that hangs", async () => {
+    const rig = session();
+    const drive = { read_us: 41, read_max_us: 2210, write_us: 12, write_max_us: 90, hangs: "write" };
+    new TestConsole().operate({ ...rig, health: { ...rig.health, drive } }).show(AlarmsPanel, {});
+    await fireEvent.click(screen.getByRole("button", { name: /Rig process/ }));
+    expect(screen.getByText("Drive hangs in").nextElementSibling?.textContent).toBe("write");
+    expect(screen.getByText(/^Drive read/).nextElementSibling?.textContent).toBe("41 / 2210 µs");
+  });
 });
