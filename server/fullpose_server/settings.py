@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Annotated, Self
 from urllib.parse import urlsplit
 
-from pydantic import Field, SecretStr, model_validator
+from pydantic import Field, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from fullpose_server.location import DATABASE, Location, PostgresqlUrl
 from fullpose_server.logs import LogFormat, LogLevel, LogSettings
 from fullpose_server.people.roles import Role
 
@@ -32,6 +33,7 @@ class Settings(BaseSettings):
     host: str = "127.0.0.1"
     port: int = Field(default=8642, ge=0, le=65535)
     data_dir: Path = Field(default_factory=default_data_dir)
+    database_url: SecretStr | None = None  # of a PostgreSQL; None: SQLite, in the data folder
     session_hours: float = Field(default=12.0, gt=0.0, le=720.0)  # of a person who signed in with a browser
     oidc_issuer: str | None = Field(default=None, pattern=r"^https?://[^?#\s]+$")  # people sign in there as well
     oidc_client_id: str = ""
@@ -92,6 +94,20 @@ class Settings(BaseSettings):
         if where.scheme != "https" and not is_loopback(where.hostname or ""):
             raise ValueError("oidc_issuer: expected https, or an address of this machine")
         return self
+
+    @field_validator("database_url")
+    @classmethod
+    def _database_url(cls, url: SecretStr | None) -> SecretStr | None:
+        if url is not None:
+            PostgresqlUrl.of(url.get_secret_value())  # raises ValueError
+        return url
+
+    @property
+    def database(self) -> Location:
+        """Where the rows are."""
+        if self.database_url is None:
+            return self.data_dir / DATABASE
+        return PostgresqlUrl.of(self.database_url.get_secret_value())
 
     @property
     def log(self) -> LogSettings:

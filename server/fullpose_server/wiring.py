@@ -23,6 +23,7 @@ from fullpose_server.api.provider import Provider
 from fullpose_server.errors import DamagedError, ServerError
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.rig_file import RigStore
+from fullpose_server.location import DATABASE, PostgresqlUrl
 from fullpose_server.operating import GuardConfig, OperatingConfig, Tolerance
 from fullpose_server.planning.comparisons import Comparisons
 from fullpose_server.planning.plan_queue import PlanQueue
@@ -43,13 +44,13 @@ from fullpose_server.store.alarm_trail import AlarmTrail
 from fullpose_server.store.alarms import AlarmHistory
 from fullpose_server.store.audit import AuditLog
 from fullpose_server.store.audit_trail import AuditTrail
+from fullpose_server.store.belonging import bind
 from fullpose_server.store.database import Database
 from fullpose_server.store.disk import Disk
 from fullpose_server.store.people import PeopleStore
 from fullpose_server.store.people_known import had_people
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.quarantine import Quarantine
-from fullpose_server.store.readonly import DATABASE
 from fullpose_server.store.trajectories import TrajectoryStore
 
 log = logging.getLogger(__name__)
@@ -79,7 +80,7 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         folder = settings.data_dir.resolve()
         stack.callback(os.close, await asyncio.to_thread(_lock, folder))
         quarantine = Quarantine(folder / "quarantine")
-        database = await asyncio.to_thread(_opened, folder / DATABASE, quarantine)
+        database = await asyncio.to_thread(_opened, settings, folder, quarantine)
         stack.callback(database.close)
         served = await asyncio.to_thread(_build, settings, folder, database, scenes, quarantine)
         services = served.services
@@ -103,8 +104,17 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         yield served
 
 
-def _opened(path: Path, quarantine: Quarantine) -> Database:
-    """The database; one that is damaged is moved aside, and a new one made in its place: a rig must be operable."""
+def _opened(settings: Settings, folder: Path, quarantine: Quarantine) -> Database:
+    """The database; a file that is damaged is moved aside, and a new one made in its place: a rig must be operable."""
+    if isinstance(settings.database, PostgresqlUrl):
+        database = Database(settings.database)
+        try:
+            bind(database, settings.database, folder)
+        except BaseException:
+            database.close()
+            raise
+        return database
+    path = folder / DATABASE
     try:
         return Database(path)
     except DamagedError as error:
@@ -159,7 +169,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         runs=runs,
         scenes=on_demand,
         offload=Offload(settings),
-        evidence=EvidenceMaker(folder),
+        evidence=EvidenceMaker(folder, settings.database),
         disk=Disk(folder, settings.disk_alarm_bytes, settings.disk_reserve_bytes),
         quarantine=quarantine,
         upkeep=Upkeep(

@@ -52,7 +52,10 @@ def arguments(
         found += [word for item in said.get(key, ()) for word in (option, item)]
     found += [word for item in said.get("security_opt", ()) for word in ("--security-opt", item.removesuffix(":true"))]
     for variable, text in said.get("environment", {}).items():
-        found += ["--env", f"{variable}={value(text, given or {})}"]
+        if text is None:  # as it is here
+            found += ["--env", variable]
+        else:
+            found += ["--env", f"{variable}={value(text, given or {})}"]
     for mount in said.get("volumes", ()):
         source, rest = value(mount, given or {}).split(":", 1)
         found += ["--volume", f"{_source(source, volumes)}:{rest}"]

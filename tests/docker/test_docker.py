@@ -126,7 +126,8 @@ def test_runs_the_command_that_is_installed_as_a_user_without_rights() -> None:
 
 
 def test_environment_is_what_the_settings_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    service = {key: default(value) for key, value in compose()["services"]["fullpose"]["environment"].items()}
+    said = compose()["services"]["fullpose"]["environment"]
+    service = {key: default(value) for key, value in said.items() if value is not None}
     both = environment() | service
     ours = {key for key in both if key.startswith("FULLPOSE_")}
     assert ours <= FIELDS
@@ -150,7 +151,7 @@ def test_compose_publishes_to_this_machine_only_and_gives_no_rights() -> None:
     for name, service in services.items():
         assert service["read_only"] is True, name
         assert service["cap_drop"] == ["ALL"], name
-        for port in service["ports"]:
+        for port in service.get("ports", []):
             address = default(port).split(":")[0]
             assert is_loopback(address), f"{name} publishes {port}"
     published = default(services["fullpose"]["ports"][0]).split(":")
@@ -169,6 +170,19 @@ def test_compose_builds_the_dockerfile_and_keeps_the_data() -> None:
     assert service["cap_add"] == ["SYS_NICE"]
     assert service["ulimits"]["rtprio"] > 0
     assert service["ulimits"]["memlock"] == -1
+
+
+def test_a_postgresql_is_in_the_profile_and_nobody_else_waits_for_it() -> None:
+    services = compose()["services"]
+    assert services["postgresql"]["profiles"] == ["postgresql"]
+    assert "ports" not in services["postgresql"]  # the server's alone
+    assert services["fullpose"]["depends_on"]["postgresql"] == {"condition": "service_healthy", "required": False}
+    assert services["fullpose"]["environment"]["FULLPOSE_DATABASE_URL"] is None
+    assert "database_url" in Settings.model_fields
+    volume, where = services["postgresql"]["volumes"][0].split(":")
+    assert volume in compose()["volumes"]
+    assert where.startswith("/var/lib/postgresql")
+    assert "[postgresql]" in (DOCKER / "Dockerfile").read_text()
 
 
 def test_caddy_reaches_the_service() -> None:

@@ -8,7 +8,17 @@ import pytest
 from fullpose_server.store.database import Database
 from fullpose_server.store.plans import PlanStore
 from fullpose_server.store.trajectories import TrajectoryStore
+from tests.support.postgresql import Server, programs, running_postgresql
 from tests.support.stores import Stores
+
+
+@pytest.fixture(scope="session")
+def postgresql() -> Iterator[Server]:
+    """A PostgreSQL of the tests' own; one for each of their processes that asks for it."""
+    if programs() is None:
+        pytest.skip("PostgreSQL is not installed (Debian's package: postgresql)")
+    with running_postgresql() as server:
+        yield server
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ What is misspelt is no setting, and an error: a bound that somebody believes to 
 """
 
 import difflib
+import importlib.util
 import os
 import tomllib
 from collections.abc import Iterable
@@ -16,11 +17,13 @@ from pydantic_core import ErrorDetails
 from pydantic_settings import SettingsError
 
 from fullpose_server.errors import FileError, ServerError
+from fullpose_server.location import NO_DRIVER
 from fullpose_server.settings import Settings
 from fullpose_server.store.people_known import has_people
 
 PREFIX = "FULLPOSE_"
 FILE_VARIABLE = f"{PREFIX}CONFIG"
+SECRETS = ("database_url", "oidc_client_secret")  # never repeated
 NOBODY = (
     "no users are configured, so this server listens on this machine only: make one with `fullpose user add NAME --role"
     " admin` for this data folder, or use --host 127.0.0.1"
@@ -75,7 +78,9 @@ def configured(
 def to_serve(found: Configuration) -> Configuration:
     """The same, where a server may start with it. Raises `ConfigurationError`: the network is for those who sign in."""
     settings = found.settings
-    if not (settings.loopback or settings.oidc_issuer or has_people(settings.data_dir)):
+    if settings.database_url is not None and importlib.util.find_spec("psycopg") is None:
+        raise ConfigurationError(f"{found.origins['database_url']}: {NO_DRIVER}")
+    if not (settings.loopback or settings.oidc_issuer or has_people(settings.database)):
         raise ConfigurationError(f"{found.origins['host']} = {settings.host}: {NOBODY}")
     return found
 
@@ -100,4 +105,5 @@ def _unknown(origin: str, key: str, known: Iterable[str]) -> str:
 def _told(wrong: ErrorDetails, origins: dict[str, str]) -> str:
     key, *inside = (str(part) for part in wrong["loc"])
     word = wrong["msg"].replace("Input should be", "expected").replace("Value error, ", "")
-    return f"{'.'.join([origins.get(key, key), *inside])} = {wrong['input']!r}: {word}"
+    given = "" if key in SECRETS else f" = {wrong['input']!r}"
+    return f"{'.'.join([origins.get(key, key), *inside])}{given}: {word}"

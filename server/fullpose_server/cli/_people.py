@@ -29,10 +29,8 @@ def people_of(data_dir: Path | None, config: Path | None) -> Iterator["PeopleSto
 def _database(data_dir: Path | None, config: Path | None) -> Iterator["Database"]:
     from fullpose_server.cli._configuration import configured
     from fullpose_server.store.database import Database
-    from fullpose_server.store.readonly import DATABASE
 
-    folder = configured(data_dir=data_dir, config=config).settings.data_dir
-    database = Database(folder / DATABASE)
+    database = Database(configured(data_dir=data_dir, config=config).settings.database)
     try:
         yield database
     finally:

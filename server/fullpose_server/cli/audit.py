@@ -3,12 +3,15 @@
 import json
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from fullpose_server.cli._arguments import Config
 from fullpose_server.cli._exit import fail
+
+if TYPE_CHECKING:
+    from fullpose_server.location import Location
 
 DataDir = Annotated[Path | None, typer.Option(help="Where the server keeps its data.")]
 
@@ -69,11 +72,10 @@ def lines(
             typer.echo(json.dumps({**row, "time": _time(row["at"])}))
 
 
-def _database(data_dir: Path | None, config: Path | None) -> Path:
+def _database(data_dir: Path | None, config: Path | None) -> "Location":
     from fullpose_server.cli._configuration import configured
-    from fullpose_server.store.readonly import DATABASE
 
-    return configured(data_dir=data_dir, config=config).settings.data_dir / DATABASE
+    return configured(data_dir=data_dir, config=config).settings.database
 
 
 def _time(seconds: float) -> str:

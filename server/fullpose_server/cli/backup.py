@@ -31,9 +31,9 @@ def backup(
     from fullpose_server.store.backup import make_backup
 
     check_writable(file)
-    folder = configured(data_dir=data_dir, config=config).settings.data_dir
+    settings = configured(data_dir=data_dir, config=config).settings
     with progress_bar("backup") as progress:
-        typer.echo(_told(make_backup(folder, file, progress)))
+        typer.echo(_told(make_backup(settings.data_dir, file, progress, settings.database)))
 
 
 def restore(
@@ -44,6 +44,7 @@ def restore(
 ) -> None:
     """Make a data folder, which must be empty or not there yet; a server starts on it as ever."""
     from fullpose_server.cli._configuration import configured
+    from fullpose_server.location import PostgresqlUrl
     from fullpose_server.store.restore import check_backup, restore_backup
 
     if check and data_dir is not None:
@@ -52,7 +53,9 @@ def restore(
         if check:
             done = check_backup(file, progress)
         else:
-            done = restore_backup(file, configured(data_dir=data_dir, config=config).settings.data_dir, progress)
+            settings = configured(data_dir=data_dir, config=config).settings
+            rows = settings.database if isinstance(settings.database, PostgresqlUrl) else None
+            done = restore_backup(file, settings.data_dir, progress, rows)
     typer.echo(_told(done))
 
 

@@ -29,7 +29,10 @@ def check(
     from fullpose_server.cli._configuration import configured, to_serve
 
     found = to_serve(configured(data_dir=data_dir, config=config))
-    for name, value in found.settings.model_dump(mode="json").items():
+    shown = found.settings.model_dump(mode="json")
+    if found.settings.database_url is not None:
+        shown["database_url"] = str(found.settings.database)  # all of it but the password
+    for name, value in shown.items():
         line = f"# {name} is unset" if value is None else f"{name} = {_toml(value)}"
         typer.echo(f"{line:<48}  # {found.origins.get(name, 'default')}")
 

@@ -1,12 +1,15 @@
 """`fullpose evidence RUN`: a run as one signed file; `verify` it anywhere; the `key` that it is signed with."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from fullpose_server.cli._arguments import Config
+
+if TYPE_CHECKING:
+    from fullpose_server.settings import Settings
 
 MAKE = "run"
 DataDir = Annotated[Path | None, typer.Option(help="Where the server keeps its data.")]
@@ -44,11 +47,12 @@ def make(
     from fullpose_server.evidence.bundle import make_bundle
     from fullpose_server.formats.output_file import check_writable
 
-    folder = _folder(data_dir, config)
+    settings = _settings(data_dir, config)
+    folder = settings.data_dir
     name = _latest(folder) if run == "latest" else run
     target = out or Path(f"{name}.zip")
     check_writable(target)
-    manifest = make_bundle(folder, name, target)
+    manifest = make_bundle(folder, name, target, settings.database)
     typer.echo(str(target))
     typer.echo(manifest["outcome"]["sentence"])
     for part, why in sorted(manifest["missing"].items()):
@@ -86,7 +90,7 @@ def key(data_dir: DataDir = None, config: Config = None) -> None:
     from fullpose_server.cli._exit import fail
     from fullpose_server.evidence.signing import public_key, signing_key
 
-    folder = _folder(data_dir, config)
+    folder = _settings(data_dir, config).data_dir
     if not folder.is_dir():
         fail(f"{folder}: there is no such data folder, name another --data-dir")
     typer.echo(public_key(signing_key(folder)))
@@ -97,10 +101,10 @@ def _print(line: str) -> None:
     typer.echo("".join(letter if letter.isprintable() else "?" for letter in line))
 
 
-def _folder(data_dir: Path | None, config: Path | None) -> Path:
+def _settings(data_dir: Path | None, config: Path | None) -> "Settings":
     from fullpose_server.cli._configuration import configured
 
-    return configured(data_dir=data_dir, config=config).settings.data_dir
+    return configured(data_dir=data_dir, config=config).settings
 
 
 def _latest(folder: Path) -> str:

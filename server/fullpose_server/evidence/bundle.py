@@ -18,6 +18,7 @@ from fullpose_server.evidence.signing import public_key, signature, signing_key
 from fullpose_server.evidence.sources import PLAN_FILES, Sources, sources_of
 from fullpose_server.formats.output_file import replacing
 from fullpose_server.formats.rig_codec import rig_values
+from fullpose_server.location import Location
 from fullpose_server.version import VERSION
 
 FORMAT = 1
@@ -27,12 +28,12 @@ RIG, RIG_VALUES = "rig.toml", "rig.json"  # as people write it, and as it is has
 _LIBRARIES = ("numpy", "scipy", "numba", "piqp", "mcap", "msgspec", "pyarrow", "sqlalchemy", "cryptography", "typst")
 
 
-def make_bundle(folder: Path, run: str, target: Path) -> dict[str, Any]:
-    """Write the bundle of a run of the data folder; returns its manifest.
+def make_bundle(folder: Path, run: str, target: Path, database: Location | None = None) -> dict[str, Any]:
+    """Write the bundle of a run of the data folder, whose rows are in `database` (its own file); returns its manifest.
 
     Raises as `sources_of`, and OSError where it cannot be written: then nothing is there.
     """
-    found = sources_of(folder, run)
+    found = sources_of(folder, run, database)
     outcome = outcome_of(found.run, found.rows, found.rig)
     key = signing_key(folder)
     with replacing(target) as draft, ArchiveWriter(draft) as archive:

@@ -18,6 +18,7 @@ from fullpose_server.evidence.errors import NoEvidenceError
 from fullpose_server.formats.plan_folder import PlanFolderError, PlanInfo, read_sealed_plan, rig_hash
 from fullpose_server.formats.rig_file import RigStore
 from fullpose_server.formats.rig_toml import rig_toml
+from fullpose_server.location import DATABASE, Location
 from fullpose_server.runtime.contract.telemetry import Samples
 from fullpose_server.runtime.recording.mcap_reader import RecordError, is_complete, read_record, run_of
 from fullpose_server.runtime.recording.record_names import RECORD, is_run
@@ -26,7 +27,6 @@ from fullpose_server.runtime.recording.run_summary import RunSummary, summary_of
 from fullpose_server.session.states import Command
 from fullpose_server.store.audit import newest_hash, read_rows
 from fullpose_server.store.reading import reading
-from fullpose_server.store.readonly import DATABASE
 from fullpose_server.store.tables import AlarmRow, AuditRow, PlanRow, TrajectoryRow
 
 AFTER_S = 5.0  # what is done so soon after a run's end belongs to it, but for what begins another
@@ -57,15 +57,15 @@ class Sources:
     missing: dict[str, str] = field(default_factory=dict)
 
 
-def sources_of(folder: Path, run: str) -> Sources:
-    """The parts of a run's evidence in the data folder.
+def sources_of(folder: Path, run: str, database: Location | None = None) -> Sources:
+    """The parts of a run's evidence in the data folder, whose rows are in `database` (its own file).
 
     Raises `NotFoundError`, `NoEvidenceError` while it is being written, `FileError` where the record is none, and as
     `store.reading.reading`.
     """
     found = _recorded(folder, run)
     _take_rig(found, folder)
-    with reading(folder / DATABASE) as session:
+    with reading(database or folder / DATABASE) as session:
         _take_plan(found, folder, session)
         _take_flight(found, folder, session)
         _take_history(found, session)

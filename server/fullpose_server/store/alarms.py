@@ -5,8 +5,6 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from sqlalchemy import delete, select, tuple_
-from sqlalchemy.dialects.sqlite import insert
-from sqlalchemy.orm import Session
 
 from fullpose_server.session.alarms import Alarm, Shelf
 from fullpose_server.store.database import Database
@@ -65,10 +63,15 @@ class AlarmHistory:
     def write(self, entries: Sequence[RaisedAlarm | RigShelves]) -> None:
         """Add or change them, all or none."""
         with self._database.begin() as session:
+            ids = [entry.id for entry in entries if isinstance(entry, RaisedAlarm)]
+            known = {row.id: row for row in session.scalars(select(AlarmRow).where(AlarmRow.id.in_(ids)))}
             for entry in entries:
                 match entry:
                     case RaisedAlarm():
-                        _upsert(session, {"id": entry.id, "rig": entry.rig, **asdict(entry.alarm)})
+                        row = known.setdefault(entry.id, AlarmRow(id=entry.id, rig=entry.rig))
+                        for name, value in asdict(entry.alarm).items():
+                            setattr(row, name, None if value != value else value)  # SQLite has no NaN
+                        session.add(row)
                     case RigShelves():
                         session.execute(delete(ShelfRow).where(ShelfRow.rig == entry.rig))
                         session.add_all(ShelfRow(rig=entry.rig, **asdict(shelf)) for shelf in entry.shelves)
@@ -113,12 +116,6 @@ class AlarmHistory:
                     surplus = delete(AlarmRow).where(tuple_(AlarmRow.time_s, AlarmRow.id) <= tuple_(*beyond))
                     gone += _count(session.execute(surplus))
         return gone
-
-
-def _upsert(session: Session, values: dict[str, Any]) -> None:
-    adding = insert(AlarmRow).values(values)
-    changed = {name: adding.excluded[name] for name in values if name != "id"}
-    session.execute(adding.on_conflict_do_update(index_elements=[AlarmRow.id], set_=changed))
 
 
 def _count(result: Any) -> int:

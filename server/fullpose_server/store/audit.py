@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Any
 
-from sqlalchemy import Integer, Select, String, select, text, type_coerce
+from sqlalchemy import Integer, Select, String, cast, select, type_coerce
 from sqlalchemy.orm import Session
 
 from fullpose_server.store.audit_entry import AuditEntry
 from fullpose_server.store.database import Database
 from fullpose_server.store.hash_chain import CONTENT, GENESIS, row_hash
-from fullpose_server.store.tables import AuditRow
+from fullpose_server.store.tables import NUL, SHOWN, AuditRow
 
 LINKED = (*CONTENT, "previous", "hash")
 _AT_ONCE = 1000  # rows that are read
@@ -25,9 +25,7 @@ class AuditLog:
 
     def write(self, entries: Sequence[AuditEntry]) -> None:
         """Add lines, all or none."""
-        with self._database.begin() as session:
-            if session.get_bind().dialect.name == "sqlite":  # so that no other program adds one between
-                session.execute(text("BEGIN IMMEDIATE"))
+        with self._database.begin_alone(AuditRow) as session:  # so that no other program adds one between
             number, previous = _newest(session)
             for entry in entries:
                 number += 1
@@ -52,9 +50,10 @@ def read_rows(
 
     What a column cannot hold is given as it is there, for `hash_chain` to find.
     """
+    as_text = type_coerce if session.get_bind().dialect.name == "sqlite" else cast  # psycopg reads JSON by itself
     columns: list[Any] = [getattr(AuditRow, name) for name in LINKED if name not in ("args", "accepted")]
     columns += [
-        type_coerce(AuditRow.args, String).label("args"),
+        as_text(AuditRow.args, String).label("args"),
         type_coerce(AuditRow.accepted, Integer).label("accepted"),
     ]
     query: Select[Any] = select(*columns).order_by(AuditRow.id)
@@ -85,7 +84,7 @@ def _newest(session: Session) -> tuple[int, str]:
 
 
 def _content(entry: AuditEntry) -> dict[str, Any]:
-    return {
+    content = {
         "at": float(entry.at),
         "who": entry.who,
         "address": entry.address,
@@ -99,3 +98,9 @@ def _content(entry: AuditEntry) -> dict[str, Any]:
         "accepted": entry.accepted,
         "detail": entry.detail,
     }
+    # What is hashed is what can be read again: PostgreSQL's text has no NUL.
+    return {name: _shown(value) for name, value in content.items()}
+
+
+def _shown(value: Any) -> Any:
+    return value.replace(NUL, SHOWN) if isinstance(value, str) else value

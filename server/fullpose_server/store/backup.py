@@ -1,7 +1,8 @@
 """A data folder as one file, made while a server works on it (`fullpose backup`); `restore` puts it back.
 
 A tar: manifest.json first (format, version, database revision, every file with its size and sha-256), then the files.
-The database is SQLite's own online backup, of one moment. The other files are linked at the beginning into a folder
+The database is an SQLite file of one moment: SQLite's own online backup, or the rows of a PostgreSQL written into one,
+so that a backup of either is restored into either. The other files are linked at the beginning into a folder
 beside them: what is removed or replaced meanwhile is in the backup as it was, and what is made meanwhile is at most
 more than the database knows. A record that is being written is copied as far as it was written. What belongs to a
 running server (locks, sockets, uploads) and what it put aside (quarantine) stays.
@@ -19,12 +20,18 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import IO
 
 from fullpose_server.errors import ServerError
 from fullpose_server.formats import durable
-from fullpose_server.store.readonly import DATABASE, readonly
+from fullpose_server.location import DATABASE, Location
+from fullpose_server.store.belonging import check
+from fullpose_server.store.copying import copy_rows
+from fullpose_server.store.database import HEAD, Database
+from fullpose_server.store.reading import reading
+from fullpose_server.store.readonly import readonly
 from fullpose_server.version import VERSION
 
 FORMAT = 1
@@ -65,14 +72,21 @@ class Manifest:
         return sum(each.size for each in self.files)
 
 
-def make_backup(data_dir: Path, target: Path, progress: Progress | None = None) -> Manifest:
-    """Write the backup of a data folder, whole or not at all. Raises `BackupError`, OSError."""
-    if not (data_dir / DATABASE).is_file():
+def make_backup(
+    data_dir: Path, target: Path, progress: Progress | None = None, database: Location | None = None
+) -> Manifest:
+    """Write the backup of a data folder, whole or not at all; its rows are in `database`, by default its own file.
+
+    Raises `BackupError`, `ServerError` for a database that cannot be read, OSError.
+    """
+    rows = database or data_dir / DATABASE
+    if not (rows.is_file() if isinstance(rows, Path) else data_dir.is_dir()):
         raise BackupError(f"{data_dir}: expected a data folder, there is no {DATABASE} in it")
     _forget_cut_off(data_dir)
     with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=data_dir) as scratch:
         held = Path(scratch)
-        revision = _copied(data_dir / DATABASE, held / DATABASE)
+        copied = _copied if isinstance(rows, Path) else partial(_written, data_dir)
+        revision = copied(rows, held / DATABASE)  # type: ignore[arg-type]  # each has its kind
         names = [DATABASE, *(name for name in _names(data_dir) if _held(data_dir / name, held / name))]
         manifest = Manifest(time.time(), VERSION, revision, [_measured(name, held / name) for name in names])
         with durable.replacing(target) as draft, tarfile.open(draft, "w") as archive:
@@ -87,6 +101,21 @@ def make_backup(data_dir: Path, target: Path, progress: Progress | None = None) 
                 if progress is not None:
                     progress(done, manifest.bytes)
     return manifest
+
+
+def _written(data_dir: Path, database: Location, target: Path) -> str:
+    """The rows of a PostgreSQL as an SQLite file, of one moment: its revision. Raises `ServerError`."""
+    made = Database(target)
+    try:
+        with reading(database) as source:
+            check(source, database, data_dir)
+            with made.begin() as session:
+                copy_rows(source, session)
+    finally:
+        made.close()
+    with closing(sqlite3.connect(target)) as copy:
+        copy.execute("PRAGMA journal_mode=DELETE")
+    return HEAD
 
 
 def _copied(database: Path, target: Path) -> str:

@@ -2,7 +2,9 @@
 
 from typing import Any, NamedTuple, TypeVar
 
-from sqlalchemy import Select, literal, tuple_
+from sqlalchemy import ColumnElement, Select, literal, or_, tuple_
+
+from fullpose_server.formats.labels import Wanted
 
 _Query = TypeVar("_Query", bound=Select[Any])
 
@@ -20,3 +22,8 @@ def newest_first(query: _Query, moment: Any, key: Any, before: Key | None, limit
         query = query.where(tuple_(moment, key) < tuple_(literal(before.created), literal(before.id)))
     query = query.order_by(moment.desc(), key.desc())
     return query if limit is None else query.limit(limit)
+
+
+def searched(wanted: Wanted, *columns: Any) -> list[ColumnElement[bool]]:
+    """The conditions that each part of what is wanted is in one of the columns, search texts."""
+    return [or_(*(column.contains(part, autoescape=True) for column in columns)) for part in wanted.parts]

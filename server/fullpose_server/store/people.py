@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from uuid import uuid4
 
-from sqlalchemy import Select, delete, func, select, text
+from sqlalchemy import Select, delete, func, select
 from sqlalchemy.orm import Session
 
 from fullpose_server.errors import NotFoundError, ServerError
@@ -43,12 +43,11 @@ class PeopleStore:
 
     @contextmanager
     def _changing(self) -> Iterator[Session]:
-        """A transaction that has the database to itself from its first look on.
+        """A transaction that has people to itself from its first look on.
 
         Two that looked before either wrote would both leave one admin, or give two changes one number.
         """
-        with self._database.begin() as session:
-            session.execute(text("BEGIN IMMEDIATE"))
+        with self._database.begin_alone(UserRow, CredentialRow) as session:
             yield session
 
     # --- people ---
@@ -181,8 +180,7 @@ class PeopleStore:
 
     def admitted(self, *, asked: bool = False) -> Admitted:
         """The credentials that hold now; `asked`: one must sign in though there is nobody yet."""
-        with self._database.begin() as session:
-            session.execute(text("BEGIN"))  # one look: both tables as of one moment
+        with self._database.begin_snapshot() as session:  # one look: both tables as of one moment
             people = {row.name: row for row in session.scalars(select(UserRow))}
             rows = session.scalars(select(CredentialRow).where(CredentialRow.revoked.is_(None)))
             held = [

@@ -9,10 +9,13 @@ from uuid import uuid4
 from sqlalchemy import Select, select
 
 from fullpose_server.errors import NotFoundError, TransitionError
+from fullpose_server.formats.labels import EVERYTHING, NO_LABELS, Labels, Wanted, search_text
 from fullpose_server.store.database import Database
 from fullpose_server.store.jobs import UNFINISHED, JobStatus
-from fullpose_server.store.keyset import Key, newest_first
+from fullpose_server.store.keyset import Key, newest_first, searched
 from fullpose_server.store.tables import PlanRow, TrajectoryRow
+
+SEARCHED = (PlanRow.search, TrajectoryRow.search)
 
 
 class PlanStore:
@@ -58,6 +61,9 @@ class PlanStore:
                 created=time.time(),
                 started=None,
                 finished=None,
+                tags=[],
+                notes="",
+                search=search_text(NO_LABELS, rig, method),
             )
             session.add(row)
         return row
@@ -76,16 +82,36 @@ class PlanStore:
         rig: str | None = None,
         before: Key | None = None,
         limit: int | None = None,
+        wanted: Wanted = EVERYTHING,
     ) -> list[tuple[PlanRow, str]]:
-        """Newest first, those after the plan at `before`, at most `limit`; each with its flight's name."""
+        """Newest first, those after the plan at `before`, at most `limit`; each with its flight's name.
+
+        What is wanted may be in the plan's own words and in its flight's.
+        """
         query = cast(Select[Any], select(PlanRow, TrajectoryRow.name).join(TrajectoryRow))
         query = newest_first(query, PlanRow.created, PlanRow.id, before, limit)
         if trajectory is not None:
             query = query.where(PlanRow.trajectory == trajectory)
         if rig is not None:
             query = query.where(PlanRow.rig == rig)
+        query = query.where(*searched(wanted, *SEARCHED))
         with self._database.begin() as session:
             return [(row, name) for row, name in session.execute(query)]
+
+    def of_wanted(self, part: str) -> frozenset[str]:
+        """The ids of the plans that have this part of what is wanted, in their own words or in their flight's."""
+        query = select(PlanRow.id).join(TrajectoryRow)
+        with self._database.begin() as session:
+            return frozenset(session.scalars(query.where(*searched(Wanted((part,)), *SEARCHED))))
+
+    def label(self, plan: str, labels: Labels) -> PlanRow:
+        """Put tags and notes to a plan, in place of those it has. Raises `NotFoundError`."""
+        with self._database.begin() as session:
+            row = session.get(PlanRow, plan)
+            if row is None:
+                raise NotFoundError("plan", plan)
+            row.tags, row.notes, row.search = list(labels.tags), labels.notes, search_text(labels, row.rig, row.method)
+        return row
 
     def folder(self, plan: str) -> Path:
         """Where the plan's arrays are."""

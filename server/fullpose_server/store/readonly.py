@@ -3,8 +3,6 @@
 from pathlib import Path
 from urllib.parse import quote
 
-DATABASE = "fullpose.db"  # in a data folder
-
 
 def readonly(database: Path) -> str:
     """Its address for `sqlite3.connect(..., uri=True)`.

@@ -5,11 +5,18 @@ import json
 import shutil
 import tarfile
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.orm import Session
+
 from fullpose_server.errors import FileError
 from fullpose_server.formats import durable
+from fullpose_server.location import DATABASE, PostgresqlUrl
+from fullpose_server.store import postgresql
 from fullpose_server.store.backup import (
     CHUNK,
     FOLDERS,
@@ -22,7 +29,8 @@ from fullpose_server.store.backup import (
     Member,
     Progress,
 )
-from fullpose_server.store.database import HEAD
+from fullpose_server.store.copying import check_empty, copy_rows
+from fullpose_server.store.database import HEAD, Database, UnreachableDatabaseError
 from fullpose_server.version import VERSION
 
 _MOST = 64 << 20  # [bytes] of a manifest
@@ -33,26 +41,64 @@ def check_backup(file: Path, progress: Progress | None = None) -> Manifest:
     return _walk(file, None, progress)
 
 
-def restore_backup(file: Path, data_dir: Path, progress: Progress | None = None) -> Manifest:
+def restore_backup(
+    file: Path, data_dir: Path, progress: Progress | None = None, database: PostgresqlUrl | None = None
+) -> Manifest:
     """Make a data folder of it, which must not be there yet (or be empty): whole or not at all.
 
-    Raises `BackupError`, `FileError`, OSError.
+    The rows go into `database`, a PostgreSQL without any, where one is named, and else stay in the folder's own file.
+    Raises `BackupError`, `FileError`, `NotEmptyError`, `StorageError`, OSError.
     """
     if data_dir.exists() and (not data_dir.is_dir() or any(data_dir.iterdir())):
         raise BackupError(f"{data_dir}: expected a folder that is empty or not there, move this one away first")
     data_dir.parent.mkdir(parents=True, exist_ok=True)
     draft = Path(tempfile.mkdtemp(prefix=f".{data_dir.name}.", dir=data_dir.parent))
     try:
-        manifest = _walk(file, draft, progress)
-        if data_dir.is_dir():
-            data_dir.rmdir()
-        draft.chmod(0o755)
-        draft.replace(data_dir)
-        durable.sync(data_dir.parent)
+        with _rows_in(database) if database is not None else nullcontext() as rows:
+            manifest = _walk(file, draft, progress)
+            if rows is not None:
+                _move_rows(draft / DATABASE, rows)
+            _put(draft, data_dir)
     except BaseException:
+        if not draft.exists():  # it is in its place already, and its rows are not
+            draft = data_dir
         shutil.rmtree(draft, ignore_errors=True)
         raise
     return manifest
+
+
+def _put(draft: Path, data_dir: Path) -> None:
+    if data_dir.is_dir():
+        data_dir.rmdir()
+    draft.chmod(0o755)
+    draft.replace(data_dir)
+    durable.sync(data_dir.parent)
+
+
+@contextmanager
+def _rows_in(location: PostgresqlUrl) -> Iterator[Session]:
+    """A transaction on an empty database. Raises `NotEmptyError`, `StorageError`."""
+    Database(location).close()  # brings it up
+    engine = postgresql.patient_engine(location, changes=True)
+    try:
+        with Session(engine) as session, session.begin():
+            check_empty(session, str(location))
+            yield session
+    except DBAPIError as error:
+        raise UnreachableDatabaseError(location, error) from error
+    finally:
+        engine.dispose()
+
+
+def _move_rows(file: Path, target: Session) -> None:
+    """From the backup's file, which is not needed any more then."""
+    source = Database(file)  # brings up what an earlier version wrote
+    try:
+        with source.begin_snapshot() as session:
+            copy_rows(session, target)
+    finally:
+        source.close()
+    file.unlink()
 
 
 def _opened(file: Path) -> tarfile.TarFile:

@@ -2,8 +2,9 @@
 
 from typing import Any
 
-from sqlalchemy import JSON, Float, ForeignKey, Index, Integer, MetaData, String
+from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Index, Integer, MetaData, String
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy.types import TypeEngine
 
 # Names for constraints, so that a later migration can speak of them.
 NAMING = {
@@ -12,6 +13,14 @@ NAMING = {
     "fk": "fk_%(table_name)s_%(column_0_name)s",
     "uq": "uq_%(table_name)s_%(column_0_name)s",
 }
+NUL, SHOWN = "\0", "\N{SYMBOL FOR NULL}"  # the one is written as the other: PostgreSQL's text has no NUL
+# What is longer, or larger, than was thought of is kept all the same: SQLite minds neither, PostgreSQL both.
+NUMBER = Integer().with_variant(BigInteger(), "postgresql")
+
+
+def text_of(length: int) -> TypeEngine[str]:
+    """Text of about so many characters."""
+    return String(length).with_variant(String(), "postgresql")
 
 
 class Table(DeclarativeBase):
@@ -27,13 +36,13 @@ class TrajectoryRow(Table):
     __tablename__ = "trajectories"
     __table_args__ = (Index("ix_trajectories_created", "created", "sha256"),)
 
-    sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
-    source_sha256: Mapped[str] = mapped_column(String(64))
-    name: Mapped[str] = mapped_column(String(200))
-    convention: Mapped[str] = mapped_column(String(8))
-    source_format: Mapped[str] = mapped_column(String(8))
-    source_bytes: Mapped[int] = mapped_column(Integer)
-    samples: Mapped[int] = mapped_column(Integer)
+    sha256: Mapped[str] = mapped_column(text_of(64), primary_key=True)
+    source_sha256: Mapped[str] = mapped_column(text_of(64))
+    name: Mapped[str] = mapped_column(text_of(200))
+    convention: Mapped[str] = mapped_column(text_of(8))
+    source_format: Mapped[str] = mapped_column(text_of(8))
+    source_bytes: Mapped[int] = mapped_column(NUMBER)
+    samples: Mapped[int] = mapped_column(NUMBER)
     start_s: Mapped[float] = mapped_column(Float)
     duration_s: Mapped[float] = mapped_column(Float)
     rate_hz: Mapped[float | None] = mapped_column(Float)
@@ -41,6 +50,17 @@ class TrajectoryRow(Table):
     peak_body_rate_deg_s: Mapped[float | None] = mapped_column(Float)
     warnings: Mapped[list[Any]]
     created: Mapped[float] = mapped_column(Float)
+    tags: Mapped[list[Any]]
+    notes: Mapped[str]
+    search: Mapped[str]  # `formats.labels.search_text` of its name, notes and tags
+
+
+class DataFolderRow(Table):
+    """The one data folder that a PostgreSQL belongs to (`store.belonging`)."""
+
+    __tablename__ = "data_folder"
+
+    id: Mapped[str] = mapped_column(String, primary_key=True)
 
 
 class PlanRow(Table):
@@ -54,21 +74,24 @@ class PlanRow(Table):
         Index("ix_plans_trajectory", "trajectory", "created", "id"),
     )
 
-    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    id: Mapped[str] = mapped_column(text_of(32), primary_key=True)
     trajectory: Mapped[str] = mapped_column(ForeignKey("trajectories.sha256"))
-    rig: Mapped[str] = mapped_column(String(64))
-    rig_hash: Mapped[str] = mapped_column(String(64))
-    method: Mapped[str] = mapped_column(String(64))
+    rig: Mapped[str] = mapped_column(text_of(64))
+    rig_hash: Mapped[str] = mapped_column(text_of(64))
+    method: Mapped[str] = mapped_column(text_of(64))
     options: Mapped[dict[str, Any]]
     start_deg: Mapped[list[Any] | None]
     remedy: Mapped[dict[str, Any] | None]  # of (a plan), kind, frame, limit: what is asked for
     rate_hz: Mapped[float] = mapped_column(Float)
-    status: Mapped[str] = mapped_column(String(16))
+    status: Mapped[str] = mapped_column(text_of(16))
     error: Mapped[dict[str, Any] | None]
     result: Mapped[dict[str, Any] | None]
     created: Mapped[float] = mapped_column(Float)
     started: Mapped[float | None] = mapped_column(Float)
     finished: Mapped[float | None] = mapped_column(Float)
+    tags: Mapped[list[Any]]
+    notes: Mapped[str]
+    search: Mapped[str]  # of its rig, method, notes and tags; its flight has its own
 
 
 class AuditRow(Table):
@@ -77,21 +100,21 @@ class AuditRow(Table):
     __tablename__ = "audit"
     __table_args__ = (Index("ix_audit_rig", "rig", "id"), Index("ix_audit_previous", "previous", unique=True))
 
-    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    id: Mapped[int] = mapped_column(NUMBER, primary_key=True, autoincrement=True)
     at: Mapped[float] = mapped_column(Float)
-    who: Mapped[str] = mapped_column(String(128))
-    rig: Mapped[str] = mapped_column(String(64))
-    command: Mapped[str] = mapped_column(String(32))
+    who: Mapped[str] = mapped_column(text_of(128))
+    rig: Mapped[str] = mapped_column(text_of(64))
+    command: Mapped[str] = mapped_column(text_of(32))
     args: Mapped[dict[str, Any]]
-    lease_epoch: Mapped[int | None]
-    lease_sequence: Mapped[int | None]
-    state_before: Mapped[str] = mapped_column(String(16))
-    state_after: Mapped[str] = mapped_column(String(16))
+    lease_epoch: Mapped[int | None] = mapped_column(NUMBER)
+    lease_sequence: Mapped[int | None] = mapped_column(NUMBER)
+    state_before: Mapped[str] = mapped_column(text_of(16))
+    state_after: Mapped[str] = mapped_column(text_of(16))
     accepted: Mapped[bool]
     detail: Mapped[str | None]
-    address: Mapped[str | None] = mapped_column(String(64))
-    previous: Mapped[str] = mapped_column(String(64))
-    hash: Mapped[str] = mapped_column(String(64))
+    address: Mapped[str | None] = mapped_column(text_of(64))
+    previous: Mapped[str] = mapped_column(text_of(64))
+    hash: Mapped[str] = mapped_column(text_of(64))
 
 
 class AlarmRow(Table):
@@ -105,21 +128,21 @@ class AlarmRow(Table):
         Index("ix_alarms_code", "code", "time_s", "id"),
     )
 
-    id: Mapped[str] = mapped_column(String(64), primary_key=True)
-    rig: Mapped[str] = mapped_column(String(64))
-    number: Mapped[int] = mapped_column(Integer)
-    code: Mapped[str] = mapped_column(String(64))
-    severity: Mapped[str] = mapped_column(String(16))
+    id: Mapped[str] = mapped_column(text_of(64), primary_key=True)
+    rig: Mapped[str] = mapped_column(text_of(64))
+    number: Mapped[int] = mapped_column(NUMBER)
+    code: Mapped[str] = mapped_column(text_of(64))
+    severity: Mapped[str] = mapped_column(text_of(16))
     message: Mapped[str] = mapped_column(String)
     time_s: Mapped[float] = mapped_column(Float)
-    frame: Mapped[str | None] = mapped_column(String(16))
+    frame: Mapped[str | None] = mapped_column(text_of(16))
     value: Mapped[float | None] = mapped_column(Float)
     limit: Mapped[float | None] = mapped_column(Float)
-    unit: Mapped[str | None] = mapped_column(String(16))
+    unit: Mapped[str | None] = mapped_column(text_of(16))
     first: Mapped[bool]
-    acknowledged_by: Mapped[str | None] = mapped_column(String(128))
+    acknowledged_by: Mapped[str | None] = mapped_column(text_of(128))
     acknowledged_s: Mapped[float | None] = mapped_column(Float)
-    count: Mapped[int] = mapped_column(Integer)
+    count: Mapped[int] = mapped_column(NUMBER)
     last_time_s: Mapped[float | None] = mapped_column(Float)
     shelved: Mapped[bool]
 
@@ -130,13 +153,13 @@ class ShelfRow(Table):
     __tablename__ = "shelves"
     __table_args__ = (Index("ix_shelves_rig", "rig"),)
 
-    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
-    rig: Mapped[str] = mapped_column(String(64))
-    code: Mapped[str] = mapped_column(String(64))
-    frame: Mapped[str | None] = mapped_column(String(16))
+    id: Mapped[int] = mapped_column(NUMBER, primary_key=True, autoincrement=True)
+    rig: Mapped[str] = mapped_column(text_of(64))
+    code: Mapped[str] = mapped_column(text_of(64))
+    frame: Mapped[str | None] = mapped_column(text_of(16))
     since_s: Mapped[float] = mapped_column(Float)
     until_s: Mapped[float] = mapped_column(Float)
-    by: Mapped[str] = mapped_column(String(128))
+    by: Mapped[str] = mapped_column(text_of(128))
     reason: Mapped[str] = mapped_column(String)
 
 
@@ -149,13 +172,13 @@ class UserRow(Table):
         Index("ix_users_subject", "subject", unique=True),
     )
 
-    name: Mapped[str] = mapped_column(String(64), primary_key=True)
-    role: Mapped[str] = mapped_column(String(16))
+    name: Mapped[str] = mapped_column(text_of(64), primary_key=True)
+    role: Mapped[str] = mapped_column(text_of(16))
     password: Mapped[str | None] = mapped_column(String)  # its hash; None: they sign in elsewhere, or by token
     subject: Mapped[str | None] = mapped_column(String)  # who they are to the provider that they sign in at
     disabled: Mapped[bool]
     created: Mapped[float] = mapped_column(Float)
-    changed: Mapped[int] = mapped_column(Integer)
+    changed: Mapped[int] = mapped_column(NUMBER)
 
 
 class CredentialRow(Table):
@@ -168,14 +191,14 @@ class CredentialRow(Table):
         Index("ix_credentials_user", "user", "created"),
     )
 
-    id: Mapped[str] = mapped_column(String(32), primary_key=True)
-    proof: Mapped[str] = mapped_column(String(64))
+    id: Mapped[str] = mapped_column(text_of(32), primary_key=True)
+    proof: Mapped[str] = mapped_column(text_of(64))
     user: Mapped[str] = mapped_column(ForeignKey("users.name"))
-    role: Mapped[str | None] = mapped_column(String(16))
+    role: Mapped[str | None] = mapped_column(text_of(16))
     session: Mapped[bool]
-    label: Mapped[str] = mapped_column(String(200))
-    address: Mapped[str | None] = mapped_column(String(64))
+    label: Mapped[str] = mapped_column(text_of(200))
+    address: Mapped[str | None] = mapped_column(text_of(64))
     created: Mapped[float] = mapped_column(Float)
     until: Mapped[float | None] = mapped_column(Float)
     revoked: Mapped[float | None] = mapped_column(Float)
-    changed: Mapped[int] = mapped_column(Integer)
+    changed: Mapped[int] = mapped_column(NUMBER)

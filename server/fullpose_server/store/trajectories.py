@@ -12,8 +12,9 @@ from sqlalchemy import func, select
 from fullpose_server.errors import InUseError, NotFoundError
 from fullpose_server.formats import durable
 from fullpose_server.formats.flight_folder import FlightFacts
+from fullpose_server.formats.labels import EVERYTHING, NO_LABELS, Labels, Wanted, search_text
 from fullpose_server.store.database import Database
-from fullpose_server.store.keyset import Key, newest_first
+from fullpose_server.store.keyset import Key, newest_first, searched
 from fullpose_server.store.tables import PlanRow, TrajectoryRow
 
 
@@ -51,6 +52,9 @@ class TrajectoryStore:
                 source_format=source_format,
                 source_bytes=source.stat().st_size,
                 created=time.time(),
+                tags=[],
+                notes="",
+                search=search_text(NO_LABELS, name),
                 **facts.to_json(),
             )
             session.add(row)
@@ -67,11 +71,23 @@ class TrajectoryStore:
             raise NotFoundError("trajectory", sha256)
         return row
 
-    def all(self, before: Key | None = None, limit: int | None = None) -> list[TrajectoryRow]:
-        """Newest first, those after the row at `before`, at most `limit`."""
+    def all(
+        self, before: Key | None = None, limit: int | None = None, wanted: Wanted = EVERYTHING
+    ) -> list[TrajectoryRow]:
+        """Newest first, those after the row at `before`, at most `limit`; those that are wanted."""
         query = newest_first(select(TrajectoryRow), TrajectoryRow.created, TrajectoryRow.sha256, before, limit)
+        query = query.where(*searched(wanted, TrajectoryRow.search))
         with self._database.begin() as session:
             return list(session.scalars(query))
+
+    def label(self, sha256: str, labels: Labels) -> TrajectoryRow:
+        """Put tags and notes to a flight, in place of those it has. Raises `NotFoundError`."""
+        with self._database.begin() as session:
+            row = session.get(TrajectoryRow, sha256)
+            if row is None:
+                raise NotFoundError("trajectory", sha256)
+            row.tags, row.notes, row.search = list(labels.tags), labels.notes, search_text(labels, row.name)
+        return row
 
     def folder(self, sha256: str) -> Path:
         """Where the arrays are (`formats.flight_folder` reads them)."""

@@ -1,17 +1,17 @@
 """The alarm history: one row an alarm over all restarts, pages, filters, retention, and a database that is locked."""
 
-import sqlite3
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
+from fullpose_server.location import Location
 from fullpose_server.session.alarms import Alarm, AlarmBook, Severity, Shelf
 from fullpose_server.store.alarm_trail import AlarmTrail
 from fullpose_server.store.alarms import AlarmFilter, AlarmHistory, RaisedAlarm, RigShelves, alarm_id
 from fullpose_server.store.database import Database
 from fullpose_server.store.keyset import Key
+from tests.support.locked import held
 from tests.support.waiting import until
 
 EVERYTHING = AlarmFilter()
@@ -19,8 +19,8 @@ DAY_S = 86_400.0
 
 
 @pytest.fixture
-def database(tmp_path: Path) -> Iterator[Database]:
-    made = Database(tmp_path / "fullpose.db", busy_s=0.05)
+def database(location: Location) -> Iterator[Database]:
+    made = Database(location, busy_s=0.05)
     yield made
     made.close()
 
@@ -89,19 +89,20 @@ def test_shelves_of_a_rig_are_those_told_last_until_their_end(history: AlarmHist
 
 
 def test_a_locked_database_loses_no_alarm_and_the_last_of_each_is_written(
-    tmp_path: Path, database: Database, history: AlarmHistory
+    location: Location, history: AlarmHistory
 ) -> None:
     trail = AlarmTrail(history)
-    locked = sqlite3.connect(tmp_path / "fullpose.db", isolation_level=None)
-    locked.execute("BEGIN EXCLUSIVE")
+    with held(location):
+        _told_while_it_is_locked(trail)
+    assert trail.written(60.0)
+    assert trail.faults() == []
+    trail.close()
+    assert [(row.id, row.count) for row in history.all(EVERYTHING, None, 10)] == [("a-2", 1), ("a-1", 7)]
+
+
+def _told_while_it_is_locked(trail: AlarmTrail) -> None:
     trail.raised("one", "a", [alarm(1, 1.0), alarm(2, 2.0)])
     trail.shelved("one", [])
     trail.raised("one", "a", [alarm(1, 1.0, count=7)])
     told = until(trail.faults)
     assert "3 lines wait to be written to the alarm history" in told[0]
-    locked.execute("ROLLBACK")
-    locked.close()
-    assert trail.written(60.0)
-    assert trail.faults() == []
-    trail.close()
-    assert [(row.id, row.count) for row in history.all(EVERYTHING, None, 10)] == [("a-2", 1), ("a-1", 7)]

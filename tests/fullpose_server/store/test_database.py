@@ -12,12 +12,10 @@ from fullpose_server.store.database import HEAD, MIGRATIONS, Database, migrate
 from fullpose_server.store.tables import Table
 
 
-def test_migrations_lead_to_the_tables(tmp_path: Path) -> None:
-    database = Database(tmp_path / "a.db")
+def test_migrations_lead_to_the_tables(database: Database) -> None:
     with database.engine.connect() as connection:
         context = MigrationContext.configure(connection, opts={"compare_type": True})
         assert compare_metadata(context, Table.metadata) == []
-    database.close()
 
 
 def test_opening_again_changes_nothing(tmp_path: Path) -> None:
@@ -33,16 +31,3 @@ def test_the_newest_revision_is_the_one_that_is_skipped() -> None:
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS))
     assert ScriptDirectory.from_config(config).get_current_head() == HEAD
-
-
-def test_an_older_database_is_brought_up(tmp_path: Path) -> None:
-    database = Database(tmp_path / "a.db")
-    with database.engine.begin() as connection:
-        for table in reversed(Table.metadata.sorted_tables):
-            connection.execute(text(f"DROP TABLE {table.name}"))
-        connection.execute(text("DELETE FROM alembic_version"))
-    database.close()
-    database = Database(tmp_path / "a.db")
-    with database.begin() as session:
-        assert session.execute(text("SELECT count(*) FROM plans")).scalar() == 0
-    database.close()

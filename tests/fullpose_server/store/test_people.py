@@ -1,6 +1,6 @@
 """People and credentials as rows."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Barrier
@@ -8,6 +8,7 @@ from threading import Barrier
 import pytest
 
 from fullpose_server.errors import NotFoundError
+from fullpose_server.location import Location
 from fullpose_server.people.admitted import Shown
 from fullpose_server.people.roles import Role
 from fullpose_server.store import people as rows
@@ -20,28 +21,26 @@ PASSWORD = "correct horse battery"
 
 
 @pytest.fixture
-def people(tmp_path: Path) -> Iterator[PeopleStore]:
-    database = Database(tmp_path / "fullpose.db")
-    yield PeopleStore(database)
-    database.close()
+def people(database: Database) -> PeopleStore:
+    return PeopleStore(database)
 
 
 def with_ann(people: PeopleStore, role: Role = Role.ADMIN) -> None:
     people.add("ann", role, None)
 
 
-def test_nobody_is_asked_to_sign_in_until_there_is_somebody(people: PeopleStore, tmp_path: Path) -> None:
+def test_nobody_is_asked_to_sign_in_until_there_is_somebody(people: PeopleStore, location: Location) -> None:
     assert not people.admitted().people
-    assert not has_people(tmp_path)
+    assert not has_people(location)
     with_ann(people)
     assert people.admitted().people
-    assert has_people(tmp_path)
+    assert has_people(location)
 
 
 def test_a_folder_that_is_none_or_damaged_has_nobody(tmp_path: Path) -> None:
     assert not has_people(tmp_path / "nowhere")
     (tmp_path / "fullpose.db").write_bytes(b"no database")
-    assert not has_people(tmp_path)
+    assert not has_people(tmp_path / "fullpose.db")
 
 
 def test_a_name_is_one_persons_however_it_is_spelled(people: PeopleStore) -> None:
@@ -53,6 +52,7 @@ def test_a_name_is_one_persons_however_it_is_spelled(people: PeopleStore) -> Non
     assert row.name == "ann"
 
 
+@pytest.mark.parametrize("location", ["sqlite"], indirect=True)
 def test_neither_secrets_nor_passwords_are_in_the_file(people: PeopleStore, tmp_path: Path) -> None:
     people.add("ann", Role.ADMIN, PASSWORD)
     token = people.make_token("ann", "for a test", None, None)
@@ -161,8 +161,8 @@ def at_once(one: Callable[[], object], other: Callable[[], object]) -> list[obje
         return [each.result() for each in [threads.submit(run, what) for what in (one, other)]]
 
 
-def test_two_who_lower_each_other_leave_an_admin(people: PeopleStore, tmp_path: Path) -> None:
-    other = Database(tmp_path / "fullpose.db")  # the command line, say
+def test_two_who_lower_each_other_leave_an_admin(people: PeopleStore, location: Location) -> None:
+    other = Database(location)  # the command line, say
     elsewhere = PeopleStore(other)
     for name in ("ann", "bob"):
         people.add(name, Role.ADMIN, None)
@@ -174,9 +174,9 @@ def test_two_who_lower_each_other_leave_an_admin(people: PeopleStore, tmp_path: 
     other.close()
 
 
-def test_no_two_changes_have_one_number(people: PeopleStore, tmp_path: Path) -> None:
+def test_no_two_changes_have_one_number(people: PeopleStore, location: Location) -> None:
     """Or a server that has seen the first would not look for the second: a revoked token would hold on."""
-    other = Database(tmp_path / "fullpose.db")
+    other = Database(location)
     elsewhere = PeopleStore(other)
     with_ann(people)
     for _ in range(40):

@@ -318,7 +318,7 @@ export interface paths {
         };
         /**
          * List Plans
-         * @description Plans, newest first, a page at a time.
+         * @description Plans, newest first, a page at a time; all, or those that are searched for, by what is their flight's too.
          */
         get: operations["list_plans_api_v1_plans_get"];
         put?: never;
@@ -354,7 +354,11 @@ export interface paths {
         delete: operations["remove_plan_api_v1_plans__plan__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Label Plan
+         * @description Put tags and notes to a plan; its hash, and what it flies, stay as they are.
+         */
+        patch: operations["label_plan_api_v1_plans__plan__patch"];
         trace?: never;
     };
     "/api/v1/plans/{plan}/remedies": {
@@ -593,6 +597,8 @@ export interface paths {
         /**
          * List Runs
          * @description Runs and incidents, newest first, a page at a time; a record that cannot be read is listed with its error.
+         *
+         *     Searched for by id, rig, who flew it, how it ended, notes and tags, and by what is their plan's or its flight's.
          */
         get: operations["list_runs_api_v1_runs_get"];
         put?: never;
@@ -624,7 +630,11 @@ export interface paths {
         delete: operations["remove_run_api_v1_runs__run__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Label Run
+         * @description Put tags and notes to a run; its record stays as it is.
+         */
+        patch: operations["label_run_api_v1_runs__run__patch"];
         trace?: never;
     };
     "/api/v1/runs/{run}/evidence": {
@@ -764,7 +774,7 @@ export interface paths {
         };
         /**
          * List Trajectories
-         * @description Flights, newest first, a page at a time.
+         * @description Flights, newest first, a page at a time; all, or those that are searched for.
          */
         get: operations["list_trajectories_api_v1_trajectories_get"];
         put?: never;
@@ -800,7 +810,11 @@ export interface paths {
         delete: operations["remove_trajectory_api_v1_trajectories__sha256__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Label Trajectory
+         * @description Put tags and notes to a flight, which stays what it is.
+         */
+        patch: operations["label_trajectory_api_v1_trajectories__sha256__patch"];
         trace?: never;
     };
     "/api/v1/trajectories/{sha256}/preview": {
@@ -1543,6 +1557,22 @@ export interface components {
             frame: "base" | "outer" | "middle" | "inner";
             /** Step Deg */
             step_deg: number;
+        };
+        /**
+         * LabelsIn
+         * @description In place of those that it has; what is left out stays as it is.
+         */
+        LabelsIn: {
+            /**
+             * Notes
+             * @description Up to 4000 characters
+             */
+            notes?: string | null;
+            /**
+             * Tags
+             * @description Up to 32 of 1 to 40 characters, without a comma; two that differ in capitals only are one
+             */
+            tags?: string[] | null;
         };
         /**
          * LeadsOut
@@ -2316,6 +2346,8 @@ export interface components {
             margins: components["schemas"]["MarginsOut"] | null;
             /** Method */
             method: string;
+            /** Notes */
+            notes: string;
             /** Options */
             options: {
                 [key: string]: boolean | number | string;
@@ -2351,6 +2383,8 @@ export interface components {
             /** Started At */
             started_at: string | null;
             status: components["schemas"]["JobStatus"];
+            /** Tags */
+            tags: string[];
             /** Trajectory */
             trajectory: string;
             /** Trajectory Name */
@@ -2876,6 +2910,8 @@ export interface components {
             max_solve_error_deg: number | null;
             /** Max Tracking Error Deg */
             max_tracking_error_deg: number | null;
+            /** Notes */
+            notes: string;
             /**
              * Pinned
              * @description It stays, whatever its age, and cannot be deleted
@@ -2894,6 +2930,8 @@ export interface components {
             samples: number | null;
             /** Started At */
             started_at: string | null;
+            /** Tags */
+            tags: string[];
             /** Who */
             who: string;
         };
@@ -3626,6 +3664,8 @@ export interface components {
             duration_s: number;
             /** Name */
             name: string;
+            /** Notes */
+            notes: string;
             /** Peak Body Rate Deg S */
             peak_body_rate_deg_s: number | null;
             /**
@@ -3651,6 +3691,8 @@ export interface components {
             source_sha256: string;
             /** Start S */
             start_s: number;
+            /** Tags */
+            tags: string[];
             /** Uniform */
             uniform: boolean;
             /** Warnings */
@@ -5195,7 +5237,11 @@ export interface operations {
                 before?: string | null;
                 /** @description Rows of the page; 100 where not given */
                 limit?: number | null;
+                /** @description Words that are all in its name, notes or tags, whatever capitals */
+                q?: string | null;
                 rig?: string | null;
+                /** @description A tag that it has */
+                tag?: string | null;
                 trajectory?: string | null;
             };
             header?: never;
@@ -5514,6 +5560,125 @@ export interface operations {
             };
             /** @description A session has loaded it */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No room on the disk */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    label_plan_api_v1_plans__plan__patch: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                plan: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LabelsIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanOut"];
+                };
+            };
+            /** @description The body is not what its type says */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rest of the request did not come */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Larger than a bound of this server */
+            413: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -6667,7 +6832,11 @@ export interface operations {
                 before?: string | null;
                 /** @description Rows of the page; 100 where not given */
                 limit?: number | null;
+                /** @description Words that are all in its name, notes or tags, whatever capitals */
+                q?: string | null;
                 rig?: string | null;
+                /** @description A tag that it has */
+                tag?: string | null;
             };
             header?: never;
             path?: never;
@@ -6859,6 +7028,125 @@ export interface operations {
             };
             /** @description It is pinned, or being written */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No room on the disk */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    label_run_api_v1_runs__run__patch: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                run: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LabelsIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunOut"];
+                };
+            };
+            /** @description The body is not what its type says */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rest of the request did not come */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Larger than a bound of this server */
+            413: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7660,6 +7948,10 @@ export interface operations {
                 before?: string | null;
                 /** @description Rows of the page; 100 where not given */
                 limit?: number | null;
+                /** @description Words that are all in its name, notes or tags, whatever capitals */
+                q?: string | null;
+                /** @description A tag that it has */
+                tag?: string | null;
             };
             header?: never;
             path?: never;
@@ -8009,6 +8301,125 @@ export interface operations {
             };
             /** @description A plan is made from it */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No room on the disk */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    label_trajectory_api_v1_trajectories__sha256__patch: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LabelsIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrajectoryOut"];
+                };
+            };
+            /** @description The body is not what its type says */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rest of the request did not come */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Larger than a bound of this server */
+            413: {
                 headers: {
                     [name: string]: unknown;
                 };

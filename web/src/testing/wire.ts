@@ -92,6 +92,8 @@ export const FLIGHT: Trajectory = {
   source_format: "csv",
   source_sha256: "s",
   warnings: [],
+  tags: [],
+  notes: "",
 };
 
 export function runOf(given: Partial<Run> = {}): Run {
@@ -116,6 +118,8 @@ export function runOf(given: Partial<Run> = {}): Run {
     max_lateness_us: 50,
     end: "completed",
     end_code: null,
+    tags: [],
+    notes: "",
     ...given,
   };
 }

@@ -12,6 +12,7 @@ from typing import Any
 
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Problem
+from fullpose_server.location import Location, PostgresqlUrl
 from fullpose_server.planning.worker_process import WorkerProcess
 
 KIND = "evidence"
@@ -21,10 +22,11 @@ log = logging.getLogger(__name__)
 
 
 class EvidenceMaker:
-    """Use it from one event loop. `folder` is the server's data folder."""
+    """Use it from one event loop. `folder` is the server's data folder, `database` has its rows."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, database: Location) -> None:
         self._folder = folder
+        self._database = database
         self._turn = asyncio.Lock()
         self._asked = 0
 
@@ -35,7 +37,8 @@ class EvidenceMaker:
         self._asked += 1
         try:
             async with self._turn:
-                await self._made({"folder": str(self._folder), "run": run, "target": str(target)})
+                url = self._database.url if isinstance(self._database, PostgresqlUrl) else None
+                await self._made({"folder": str(self._folder), "run": run, "target": str(target), "database": url})
         finally:
             self._asked -= 1
 

@@ -18,10 +18,13 @@ def main() -> None:
     serve(load, _failure)
 
 
-def _made(asked: Mapping[str, str], _progress: Progress) -> dict[str, Any]:
+def _made(asked: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
     from fullpose_server.evidence.bundle import make_bundle
+    from fullpose_server.location import PostgresqlUrl
 
-    make_bundle(Path(asked["folder"]), asked["run"], Path(asked["target"]))
+    url = asked["database"]
+    database = None if url is None else PostgresqlUrl.of(url)
+    make_bundle(Path(asked["folder"]), asked["run"], Path(asked["target"]), database)
     return {}
 
 

@@ -13,11 +13,13 @@ from fullpose.registry import DEFAULT, REGISTRY, method_options, option_defaults
 from fullpose.rig import FRAMES
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep, WhoDep
+from fullpose_server.api.labels import WantedDep, changed
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.progress import progress_out
 from fullpose_server.api.quotas import check_span, queue_slot
+from fullpose_server.api.schemas.labels import LabelsIn
 from fullpose_server.api.schemas.plans import (
     JobErrorOut,
     MethodOut,
@@ -81,10 +83,15 @@ async def add_plan(body: PlanIn, response: Response, services: ServicesDep, who:
 
 @router.get("/plans", response_model=list[PlanOut], responses=LINKED)
 def list_plans(
-    request: Request, services: ServicesDep, page: PageDep, trajectory: str | None = None, rig: str | None = None
+    request: Request,
+    services: ServicesDep,
+    page: PageDep,
+    wanted: WantedDep,
+    trajectory: str | None = None,
+    rig: str | None = None,
 ) -> Response:
-    """Plans, newest first, a page at a time."""
-    found = services.plans.all(trajectory, rig, page.before, page.wanted)
+    """Plans, newest first, a page at a time; all, or those that are searched for, by what is their flight's too."""
+    found = services.plans.all(trajectory, rig, page.before, page.wanted, wanted)
     rows = page.cut(found)
     last = Key(rows[-1][0].created, rows[-1][0].id) if rows else None
     return page.answer(request, _LIST.dump_json([_out(services, *row) for row in rows]), len(found), last)
@@ -94,6 +101,13 @@ def list_plans(
 def get_plan(plan: str, services: ServicesDep) -> PlanOut:
     """One plan and how far it is."""
     return _out(services, services.plans.get(plan))
+
+
+@router.patch("/plans/{plan}", dependencies=CHANGE)
+def label_plan(plan: str, body: LabelsIn, services: ServicesDep) -> PlanOut:
+    """Put tags and notes to a plan; its hash, and what it flies, stay as they are."""
+    row = services.plans.get(plan)
+    return _out(services, services.plans.label(plan, changed(body, row.tags, row.notes)))
 
 
 @router.post("/plans/{plan}/remedies", status_code=202, responses=BUSY, dependencies=CHANGE)
@@ -190,6 +204,8 @@ def _out(services: Services, row: PlanRow, name: str | None = None) -> PlanOut:
             "report": ReportOut(**result["report"]) if result else None,
             "verdict": result.get("verdict"),
             "margins": result.get("margins"),
+            "tags": row.tags,
+            "notes": row.notes,
             "remedy": None if row.remedy is None else _remedy(row.remedy, result.get("remedy") or {}),
         }
     )

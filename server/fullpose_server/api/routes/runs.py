@@ -12,13 +12,17 @@ from starlette.responses import FileResponse, Response
 
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
+from fullpose_server.api.labels import WantedDep, changed
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
+from fullpose_server.api.schemas.labels import LabelsIn
 from fullpose_server.api.schemas.records import RunOut
+from fullpose_server.formats.labels import Wanted
 from fullpose_server.runtime.recording.export import write_export
 from fullpose_server.runtime.recording.mcap_reader import is_complete
 from fullpose_server.runtime.recording.run_index import RunInUseError
+from fullpose_server.runtime.recording.run_search import Sought
 from fullpose_server.runtime.recording.run_summary import RunSummary
 from fullpose_server.session.run_end import RunEnd
 from fullpose_server.store.keyset import Key
@@ -32,12 +36,34 @@ MEDIA_TYPES = {"csv": "text/csv", "parquet": "application/vnd.apache.parquet", "
 
 
 @router.get("", response_model=list[RunOut], responses=LINKED)
-def list_runs(request: Request, services: ServicesDep, page: PageDep, rig: str | None = None) -> Response:
-    """Runs and incidents, newest first, a page at a time; a record that cannot be read is listed with its error."""
-    found = services.runs.all(rig, None if page.before is None else page.before.id, page.wanted)
+def list_runs(
+    request: Request, services: ServicesDep, page: PageDep, wanted: WantedDep, rig: str | None = None
+) -> Response:
+    """Runs and incidents, newest first, a page at a time; a record that cannot be read is listed with its error.
+
+    Searched for by id, rig, who flew it, how it ended, notes and tags, and by what is their plan's or its flight's.
+    """
+    before = None if page.before is None else page.before.id
+    found = services.runs.all(rig, before, page.wanted, _sought(services, wanted))
     runs = page.cut(found)
     last = Key(runs[-1].started or 0.0, runs[-1].id) if runs else None
     return page.answer(request, _LIST.dump_json([_out(services, run) for run in runs]), len(found), last)
+
+
+def _sought(services: Services, wanted: Wanted) -> Sought | None:
+    """None where nothing is searched for."""
+    if not wanted.parts:
+        return None
+    return tuple((part, services.plans.of_wanted(part)) for part in wanted.parts)
+
+
+@router.patch("/{run}", dependencies=CHANGE)
+def label_run(run: str, body: LabelsIn, services: ServicesDep) -> RunOut:
+    """Put tags and notes to a run; its record stays as it is."""
+    found = services.runs.get(run)
+    before = services.runs.labels.get(run)
+    services.runs.labels.put(run, changed(body, before.tags, before.notes))
+    return _out(services, found)
 
 
 @router.get("/{run}")
@@ -126,7 +152,10 @@ def unpin_run(run: str, services: ServicesDep) -> None:
 
 
 def _out(services: Services, run: RunSummary) -> RunOut:
+    labels = services.runs.labels.get(run.id)
     return RunOut(
+        tags=list(labels.tags),
+        notes=labels.notes,
         pinned=services.runs.pinned(run.id),
         id=run.id,
         rig=run.rig,

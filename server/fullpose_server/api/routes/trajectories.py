@@ -13,11 +13,13 @@ from pydantic import TypeAdapter
 
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
+from fullpose_server.api.labels import WantedDep, changed
 from fullpose_server.api.offload.work import ReadRequest, Work
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Notice
+from fullpose_server.api.schemas.labels import LabelsIn
 from fullpose_server.api.schemas.trajectories import TrajectoryOut, TrajectoryPreview
 from fullpose_server.api.uploads import receive_body, receive_form
 from fullpose_server.errors import InUseError
@@ -110,9 +112,9 @@ def _clear(source: Path, folder: Path) -> None:
 
 
 @router.get("", response_model=list[TrajectoryOut], responses=LINKED)
-def list_trajectories(request: Request, services: ServicesDep, page: PageDep) -> Response:
-    """Flights, newest first, a page at a time."""
-    found = services.trajectories.all(page.before, page.wanted)
+def list_trajectories(request: Request, services: ServicesDep, page: PageDep, wanted: WantedDep) -> Response:
+    """Flights, newest first, a page at a time; all, or those that are searched for."""
+    found = services.trajectories.all(page.before, page.wanted, wanted)
     rows = page.cut(found)
     last = Key(rows[-1].created, rows[-1].sha256) if rows else None
     return page.answer(request, _LIST.dump_json([_out(row) for row in rows]), len(found), last)
@@ -122,6 +124,13 @@ def list_trajectories(request: Request, services: ServicesDep, page: PageDep) ->
 def get_trajectory(sha256: str, services: ServicesDep) -> TrajectoryOut:
     """One flight."""
     return _out(services.trajectories.get(sha256))
+
+
+@router.patch("/{sha256}", dependencies=CHANGE)
+def label_trajectory(sha256: str, body: LabelsIn, services: ServicesDep) -> TrajectoryOut:
+    """Put tags and notes to a flight, which stays what it is."""
+    row = services.trajectories.get(sha256)
+    return _out(services.trajectories.label(sha256, changed(body, row.tags, row.notes)))
 
 
 @router.get("/{sha256}/preview")

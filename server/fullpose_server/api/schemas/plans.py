@@ -20,6 +20,7 @@ from fullpose_server.api.schemas.base import (
     Wire,
     Word,
 )
+from fullpose_server.api.schemas.labels import LabelledOut
 from fullpose_server.store.jobs import JobStatus
 
 
@@ -191,7 +192,7 @@ class RemedyOut(Wire):
     alternatives: list[RemedyChange] = Field(description="Other single limits that would do, the least raise first")
 
 
-class PlanOut(Wire):
+class PlanOut(LabelledOut):
     """A plan and its job. `flyable` plans can be loaded; the others say why not in `refusal`."""
 
     id: str

@@ -6,13 +6,14 @@ from typing import Any, Literal
 from pydantic import Field
 
 from fullpose_server.api.schemas.base import Wire
+from fullpose_server.api.schemas.labels import LabelledOut
 from fullpose_server.api.schemas.session import AlarmOut, RigHealth
 from fullpose_server.planning.runner import RunnerStatus
 from fullpose_server.session.run_end import RunEnd
 from fullpose_server.session.states import State
 
 
-class RunOut(Wire):
+class RunOut(LabelledOut):
     """A recorded run; errors are those of the flight itself, running or held, leads left out."""
 
     id: str

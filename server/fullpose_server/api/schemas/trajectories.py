@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fullpose_server.api.schemas.base import Four, Notice, Number, Sha256, Wire
+from fullpose_server.api.schemas.labels import LabelledOut
 
 ConventionName = Literal["nue", "ned"]
 Samples = Annotated[list[Number], Field(min_length=1, fail_fast=True)]
@@ -50,7 +51,7 @@ class TrajectoryIn(Wire):
         return table
 
 
-class TrajectoryOut(Wire):
+class TrajectoryOut(LabelledOut):
     """A stored flight. Its address is the SHA-256 of the attitude samples, whatever file they came in."""
 
     sha256: Sha256

@@ -11,9 +11,12 @@ from pathlib import Path
 
 from fullpose_server.errors import FileError, NotFoundError, ServerError
 from fullpose_server.formats import durable
+from fullpose_server.formats.labels import NO_LABELS
 from fullpose_server.formats.output_file import write_text
 from fullpose_server.runtime.recording.mcap_reader import RecordError, is_complete, run_of
 from fullpose_server.runtime.recording.record_names import RECORD, RecordNames, is_run, rig_of
+from fullpose_server.runtime.recording.run_labels import LABELS, RunLabels
+from fullpose_server.runtime.recording.run_search import RunSearch, Sought
 from fullpose_server.runtime.recording.run_summary import RunSummary, brief, summarise, unreadable
 
 PIN = ".pin"  # of the mark beside a record that is to stay
@@ -33,7 +36,9 @@ class RunFiles:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.labels = RunLabels(folder)
         self._names = RecordNames(folder)
+        self._search = RunSearch(folder, self.labels)
         self._closing = threading.Event()
 
     def close(self) -> None:
@@ -54,11 +59,14 @@ class RunFiles:
             if self._closing.is_set():
                 return
 
-    def all(self, rig: str | None = None, before: str | None = None, limit: int | None = None) -> list[RunSummary]:
+    def all(
+        self, rig: str | None = None, before: str | None = None, limit: int | None = None, sought: Sought | None = None
+    ) -> list[RunSummary]:
         """Newest first, those after the run `before`, at most `limit`; one that cannot be read says why.
 
         One that has only just begun may be left out; of those that have no summary yet only so many are read as half
-        a second allows, of the others what follows from their samples is not told.
+        a second allows, of the others what follows from their samples is not told. `sought`: those
+        alone that have each of its parts.
         """
         found: list[RunSummary] = []
         began = time.monotonic()
@@ -69,6 +77,8 @@ class RunFiles:
             if limit is not None and len(found) >= limit:
                 break
             if rig is not None and rig_of(run) != rig:
+                continue
+            if sought is not None and not self._search.fits(run, sought):
                 continue
             path = self.folder / f"{run}{RECORD}"
             # One that is gone since we looked for it is no run any more.
@@ -103,6 +113,8 @@ class RunFiles:
         if is_being_written(path):
             raise RunInUseError(run, "it is being written")
         path.with_suffix(".json").unlink(missing_ok=True)
+        self.labels.put(run, NO_LABELS)
+        self._search.forget(run)
         path.unlink(missing_ok=True)
 
     def pin(self, run: str, *, pinned: bool) -> None:
@@ -148,7 +160,7 @@ class RunFiles:
     def files(self, run: str) -> list[Path]:
         """The record and what is kept beside it."""
         path = self.folder / f"{run}{RECORD}"
-        return [path, path.with_suffix(".json"), path.with_suffix(PIN)]
+        return [path, path.with_suffix(".json"), path.with_suffix(PIN), path.with_suffix(LABELS)]
 
     def _summary(self, path: Path) -> RunSummary:
         """Of the file: read whole once, when nobody writes to it any more, and kept beside it."""

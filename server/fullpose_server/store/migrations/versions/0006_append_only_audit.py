@@ -26,6 +26,19 @@ TRIGGERS = {
         f"(SELECT hash FROM audit ORDER BY id DESC LIMIT 1), '{GENESIS}')",
     ),
 }
+# The error is the one by which PostgreSQL says that a row may not be so.
+REFUSAL = "RAISE EXCEPTION 'the audit is append-only' USING ERRCODE = 'integrity_constraint_violation'"
+POSTGRESQL = (
+    f"CREATE FUNCTION audit_refuses() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN {REFUSAL}; END $$",
+    "CREATE FUNCTION audit_follows() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN"
+    " IF NEW.id IS DISTINCT FROM (SELECT coalesce(max(id), 0) + 1 FROM audit)"
+    " OR NEW.previous IS DISTINCT FROM coalesce("
+    f"(SELECT hash FROM audit ORDER BY id DESC LIMIT 1), '{GENESIS}')"
+    f" THEN {REFUSAL}; END IF; RETURN NEW; END $$",
+    "CREATE TRIGGER audit_keeps BEFORE UPDATE OR DELETE OR TRUNCATE ON audit"
+    " FOR EACH STATEMENT EXECUTE FUNCTION audit_refuses()",
+    "CREATE TRIGGER audit_follows BEFORE INSERT ON audit FOR EACH ROW EXECUTE FUNCTION audit_follows()",
+)
 
 
 def upgrade() -> None:
@@ -42,12 +55,20 @@ def upgrade() -> None:
         for name, (when, only) in TRIGGERS.items():
             refusal = "SELECT RAISE(ABORT, 'the audit is append-only')"
             op.execute(f"CREATE TRIGGER {name} {when} ON audit {only} BEGIN {refusal}; END")
+    else:
+        for statement in POSTGRESQL:
+            op.execute(statement)
 
 
 def downgrade() -> None:
     if op.get_bind().dialect.name == "sqlite":
         for name in TRIGGERS:
             op.execute(f"DROP TRIGGER {name}")
+    else:
+        op.execute("DROP TRIGGER audit_keeps ON audit")
+        op.execute("DROP TRIGGER audit_follows ON audit")
+        op.execute("DROP FUNCTION audit_refuses()")
+        op.execute("DROP FUNCTION audit_follows()")
     op.drop_index("ix_audit_previous", "audit")
     with op.batch_alter_table("audit") as table:
         for column in ("hash", "previous", "address"):
