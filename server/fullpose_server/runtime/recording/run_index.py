@@ -69,6 +69,7 @@ class RunFiles:
         alone that have each of its parts.
         """
         found: list[RunSummary] = []
+        fits = None if sought is None else self._search.by(sought)
         began = time.monotonic()
         # Of ten thousand records all but a page are passed over by their names alone.
         ids = self._names.all()
@@ -78,7 +79,7 @@ class RunFiles:
                 break
             if rig is not None and rig_of(run) != rig:
                 continue
-            if sought is not None and not self._search.fits(run, sought):
+            if fits is not None and not fits(run):
                 continue
             path = self.folder / f"{run}{RECORD}"
             # One that is gone since we looked for it is no run any more.

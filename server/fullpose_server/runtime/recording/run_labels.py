@@ -22,11 +22,11 @@ class RunLabels:
 
     def get(self, run: str) -> Labels:
         """Those of a run."""
-        return self._all().get(run, NO_LABELS)
+        return self.all().get(run, NO_LABELS)
 
     def put(self, run: str, labels: Labels) -> None:
         """In place of those that it has."""
-        known, file = self._all(), self._folder / f"{run}{LABELS}"
+        known, file = self.all(), self._folder / f"{run}{LABELS}"
         with self._changing:
             if labels == NO_LABELS:
                 file.unlink(missing_ok=True)
@@ -35,7 +35,8 @@ class RunLabels:
                 write_text(file, json.dumps(asdict(labels)))
                 known[run] = labels
 
-    def _all(self) -> dict[str, Labels]:
+    def all(self) -> dict[str, Labels]:
+        """By run, of those that have some."""
         with self._changing:
             if self._known is None:
                 self._known = {}

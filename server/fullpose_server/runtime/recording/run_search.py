@@ -1,10 +1,11 @@
 """Runs that are searched for: by what their summaries say, by their labels, and by plans that somebody else found."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fullpose_server.formats.labels import NO_LABELS, search_text
+from fullpose_server.formats.labels import search_text
 from fullpose_server.runtime.recording.run_labels import RunLabels
 
 # Each part of what is searched for, with the plans that have it.
@@ -25,12 +26,17 @@ class RunSearch:
         self._labels = labels
         self._texts: dict[str, _Text] = {}
 
-    def fits(self, run: str, sought: Sought) -> bool:
+    def by(self, sought: Sought) -> Callable[[str], bool]:
         """Whether a run has each part; one without a summary yet is known by its id and its labels alone."""
-        text, plan = self._texts.get(run) or self._read(run)
-        labels = self._labels.get(run)
-        said = text if labels == NO_LABELS else f"{text}\n{search_text(labels)}"
-        return all(part in said or plan in plans for part, plans in sought)
+        labels, texts = self._labels.all(), self._texts
+
+        def fits(run: str) -> bool:
+            text, plan = texts.get(run) or self._read(run)
+            if run in labels:
+                text = f"{text}\n{search_text(labels[run])}"
+            return all(part in text or plan in plans for part, plans in sought)
+
+        return fits
 
     def forget(self, run: str) -> None:
         """It is gone."""
