@@ -40,6 +40,7 @@ from fullpose_server.runtime.supervisor.rig_client import RigHost
 
 FILES = 1024
 Asking = Callable[[str], None]  # to stop or to E-stop
+TRIPPED = ("faulted", "ready", "disconnected")
 FULL = "full"  # the attack that is no client
 DISK_BYTES = 320_000_000  # a rig is armed where 200 MB are free
 BOUNDS = {"braking_ms": 20.0, "answer_ms": 100.0, "gap_ms": 100.0, "server_mb": 1024.0}  # p99, and the most
@@ -53,6 +54,7 @@ class Stops:
         self.answer: list[float] = []
         self.bare: list[float] = []
         self.lost: list[str] = []
+        self.tripped: list[str] = []  # after the stop the rig was faulted, or had been disarmed: why
 
     async def once(self, host: RigHost, operator: Operator, over: Asking, word: str, sign: float) -> None:
         """One, in the middle of a move."""
@@ -64,16 +66,21 @@ class Stops:
         except (AssertionError, OSError, http.client.HTTPException) as refused:
             self.lost.append(repr(refused)[:300])
             await operator.say("stop")
-            await operator.until("estopped", "armed")
+            await operator.until("estopped", "armed", *TRIPPED)
         else:
-            await operator.until("estopped" if word == "estop" else "armed")
+            await operator.until("estopped" if word == "estop" else "armed", *TRIPPED)
             wrote = int(host.memory.header[f"{word}_wrote_ns"][0])
             assert wrote >= asked, "the rig was not moving"
             self.braking.append((wrote - asked) / 1e6)
             self.answer.append((answered - asked) / 1e6)
-        if host.snapshot().state == "estopped":
+        state = host.snapshot().state
+        if state in TRIPPED:
+            self.tripped.append(", ".join(f"{a.code}: {a.message}" for a in host.snapshot().alarms)[:300] or state)
+        if state in ("estopped", "faulted"):
             await asyncio.sleep(0.3)
             await operator.recover()
+        elif state == "ready":
+            await operator.must("unload")
 
 
 def _asked(over: Asking, word: str) -> tuple[int, int]:
@@ -160,6 +167,8 @@ def told(name: str, stops: Stops) -> None:
         values = getattr(stops, what)
         if values:
             print(row(f"{name}, {'bare uvicorn' if what == 'bare' else what}", values), flush=True)
+    for why in stops.tripped:
+        print(f"# {name}: the rig tripped: {why}", flush=True)
     for why in stops.lost:
         print(f"# {name}: LOST: {why}", flush=True)
 
