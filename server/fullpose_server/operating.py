@@ -60,8 +60,8 @@ class GuardConfig:
 
     following_deg: Tolerance = Tolerance(1.0, 3.0)  # a frame against what it was commanded
     attitude_deg: Tolerance = Tolerance(1.0, 5.0)  # the payload against the flight, geodesic
-    lateness_ms: Tolerance = Tolerance(2.0, 50.0)  # of one tick
-    misses_per_s: Tolerance = Tolerance(20.0, 200.0)  # deadlines missed in the last second
+    lateness_ms: Tolerance | None = None  # of one tick; None: as the loop's profile has it
+    misses_per_s: Tolerance | None = None  # deadlines missed in the last second; None: likewise
     stale_ms: Tolerance = Tolerance(20.0, 100.0)  # age of the live source's newest sample
     max_step_deg: float = 5.0  # between two commands, whatever the rig's rates
 

@@ -123,10 +123,13 @@ class ToleranceTable(Table):
 LEVELS = Expected("levels such as {warn = 1.0, trip = 3.0}; one that is left out is off")
 
 
+_TOLERANCES = (Tolerance, Tolerance | None)
+
+
 def _table_of(name: str, config: type[Any]) -> type[Table]:
     """A table with a key for every field of a dataclass of numbers and tolerances; each may be left out."""
     keys: dict[str, Any] = {
-        f.name: (Annotated[ToleranceTable | None, LEVELS] if f.type is Tolerance else Number | None, None)
+        f.name: (Annotated[ToleranceTable | None, LEVELS] if f.type in _TOLERANCES else Number | None, None)
         for f in fields(config)
     }
     return create_model(name, __base__=Table, __doc__=config.__doc__, **keys)

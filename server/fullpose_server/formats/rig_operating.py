@@ -16,7 +16,7 @@ from fullpose_server.formats.rig_keys import bad
 from fullpose_server.operating import ConfigError, GuardConfig, OperatingConfig, Tolerance
 from fullpose_server.session.machine import SilencePolicy
 
-TOLERANCES = tuple(f.name for f in fields(GuardConfig) if f.type is Tolerance)
+TOLERANCES = tuple(f.name for f in fields(GuardConfig) if f.type in (Tolerance, Tolerance | None))
 PROCESS = tuple(ProcessTable.model_fields)
 
 

@@ -34,6 +34,19 @@ def go_realtime(priority: int | None, cpu: int | None) -> str:
     return f"on: SCHED_FIFO {priority}, memory locked"
 
 
+def realtime_granted(priority: int | None) -> bool:
+    """Whether SCHED_FIFO at `priority` would be granted: asked for, and given back at once."""
+    if priority is None:
+        return False
+    before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+    except OSError:
+        return False
+    os.sched_setscheduler(0, before, parameters)
+    return True
+
+
 def still_collector() -> None:
     """Keep the garbage collector out of the loop; the loop collects by itself while the rig is at rest."""
     gc.collect()

@@ -14,6 +14,7 @@ from fullpose_server.drives.response_monitor import DriveResponseMonitor
 from fullpose_server.runtime.contract.config import RigConfig, Tolerance
 from fullpose_server.runtime.contract.hung import recorder_lost
 from fullpose_server.runtime.live.source import LiveView
+from fullpose_server.runtime.loop.loop_profile import STRICT, fitted
 from fullpose_server.runtime.loop.watched_drive import DriveFailure
 from fullpose_server.runtime.motion.limit_guard import Finding, Guard
 from fullpose_server.session.states import Event
@@ -77,6 +78,7 @@ class Monitors:
         self._seen: dict[tuple[str, str | None], float] = {}  # when each condition was there last [s, monotonic]
         self._counted: dict[str, int] = {}
         self._misses: list[float] = []
+        self._timing = fitted(config, STRICT).guard  # a configuration that has met no profile is held to the strict one
         self._response = DriveResponseMonitor(round(_ORDER_S * config.rate_hz))
 
     def forget(self) -> None:
@@ -166,7 +168,7 @@ class Monitors:
 
     def lateness(self, now: float, lateness_ns: int, missed: int, *, moving: bool) -> list[Violation]:
         """Ticks that were late, and deadlines that were missed: what the drive did not hear in time."""
-        guard, tolerances = self._guard, self._config.guard
+        guard, tolerances = self._guard, self._timing
         found: list[Violation] = []
         if moving:
             found += weighed(guard.scalar(WarningCode.LATENESS, lateness_ns / 1e6, tolerances.lateness_ms, "ms"))

@@ -34,6 +34,7 @@ from fullpose_server.runtime.loop.control_server import ControlServer
 from fullpose_server.runtime.loop.drive_watch import DriveWatch
 from fullpose_server.runtime.loop.event_log import EventLog
 from fullpose_server.runtime.loop.leisure import Leisure
+from fullpose_server.runtime.loop.loop_profile import fitted, profile_of, told
 from fullpose_server.runtime.loop.recorder_child import RecorderChild, WaitingRecorder
 from fullpose_server.runtime.loop.watched_drive import WatchedDrive
 from fullpose_server.runtime.motion.generator import Motion
@@ -90,6 +91,8 @@ def run(file: Path, waiting: WaitingRecorder | None) -> int:
     if lock is None:
         log.error("another process runs %s", settings.name)
         return 1
+    profile = profile_of(settings.drive, realtime=clock.realtime_granted(settings.realtime_priority))
+    settings = fitted(settings, profile)
     try:
         drive: Drive = registry.make(settings.drive, settings.rig, settings.rate_hz, settings.drive_options)
     except DriveError as cause:
@@ -108,7 +111,7 @@ def run(file: Path, waiting: WaitingRecorder | None) -> int:
     recorder.wait_for(shared, ticks)
     try:
         try:
-            realtime = clock.go_realtime(settings.realtime_priority, settings.cpu)
+            realtime = told(clock.go_realtime(settings.realtime_priority, settings.cpu), profile)
         except OSError as cause:
             log.error("process.cpu = %s: %s; expected one of this machine's", settings.cpu, cause.strerror)
             return 2

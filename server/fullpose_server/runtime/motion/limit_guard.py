@@ -156,9 +156,11 @@ class Guard:
         return error, [each for each in found if each is not None]
 
     def scalar(
-        self, code: str, value: float, tolerance: Tolerance, unit: str = "deg", frame: str | None = None
+        self, code: str, value: float, tolerance: Tolerance | None, unit: str = "deg", frame: str | None = None
     ) -> Finding | None:
         """Compare `value` with a tolerance: above trip, above warn, or None. A value that is no number trips."""
+        if tolerance is None:
+            return None
         where = "" if frame is None else f"{frame} frame, "
         for trips, level in ((True, tolerance.trip), (False, tolerance.warn)):
             if level is not None and not value <= level:
