@@ -24,7 +24,7 @@ from fullpose_server.runtime.loop import prewarm
 
 def main() -> None:
     """One second of the demo flight through everything; one line a method."""
-    with as_file(files("fullpose_server") / "demo_flights" / "loop.csv") as path:
+    with as_file(files("fullpose_server") / "demo_flights" / "loop_and_roll.csv") as path:
         rows = np.loadtxt(path, delimiter=",", skiprows=1, max_rows=201)
     flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:]), 1000.0)
     attitude = dcm_from_quaternion(flight.q)

@@ -23,7 +23,7 @@ from tools.autopilot import STEP_HZ, Gains, Manoeuvre, Pilot, levelled
 
 RATE_HZ = 200  # the rows written
 REPOSITORY = Path(__file__).parents[1]
-DEMO = "loop"  # the flight that `fullpose demo` flies; the package carries a copy
+DEMO = "loop_and_roll"  # the flight that `fullpose demo` flies; the package carries a copy
 DIGITS = 12  # of a quaternion's component; the angles get the same resolution
 
 
@@ -48,6 +48,22 @@ def loop(pilot: Pilot) -> Manoeuvre:
     pilot.throttle(1.0)
     yield from pilot.pull(math.radians(20.0), math.tau, math.radians(14.0))
     yield from pilot.hold(level, 4.0)
+
+
+def loop_and_roll(pilot: Pilot) -> Manoeuvre:
+    """A loop, then nose up 12 deg and one turn to the left at 45 deg/s, then level.
+
+    Flown east: the nose goes by both directions in which a three-axis table is singular, up and along the outer axis
+    of a horizontal one.
+    """
+    level = pilot.now.body_from_ned.copy()
+    yield from pilot.hold(level, 2.0)
+    pilot.throttle(1.0)
+    yield from pilot.pull(math.radians(20.0), math.tau, math.radians(14.0))
+    raised = levelled(level, math.radians(12.0))
+    yield from pilot.hold(raised, 3.0)
+    yield from pilot.roll(math.radians(-45.0), math.tau, raised[0])
+    yield from pilot.hold(levelled(pilot.now.body_from_ned, math.radians(5.0)), 4.0)
 
 
 def slow_roll(pilot: Pilot) -> Manoeuvre:
@@ -76,6 +92,7 @@ FLIGHTS = {
     flight.name: flight
     for flight in (
         Flight("loop", "A4", 8_000, 420, 40.0, Gains(0.5, 0.5, 0.8, 2.5, 0.5, 1.0), "quaternion", loop),
+        Flight(DEMO, "A4", 8_000, 420, 90.0, Gains(0.5, 0.5, 0.8, 2.5, 0.5, 1.0), "quaternion", loop_and_roll),
         Flight("slow_roll", "t6texan2", 10_000, 180, 350.0, Gains(0.5, 0.8, 0.8, 2.5, 1.2, 1.0), "euler", slow_roll),
         Flight("split_s", "T38", 18_000, 280, 120.0, Gains(0.5, 0.5, 0.8, 2.5, 0.5, 1.0), "quaternion", split_s),
     )

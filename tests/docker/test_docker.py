@@ -88,7 +88,7 @@ def test_the_wheels_own_files_are_copied() -> None:
     ("path", "out"),
     [
         ("server/fullpose_server/app.py", False),
-        ("server/fullpose_server/demo_flights/loop.csv", False),
+        ("server/fullpose_server/demo_flights/loop_and_roll.csv", False),
         ("web/src/main.ts", False),
         ("web/node_modules/vite/package.json", True),
         ("server/fullpose_server/console/index.html", True),

@@ -8,13 +8,15 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_ned
+from fullpose.plan import plan
 from fullpose.registry import method_options, parse_variant
 from fullpose.resample import resample
 from fullpose.rig import builtin_rigs
 from fullpose.solve import solve
 from fullpose.verify import verify
+from fullpose_server.cli import demo
 from tests.support.repository import ROOT
-from tools.fly_flights import FLIGHTS, RATE_HZ, fly, table
+from tools.fly_flights import DEMO, FLIGHTS, RATE_HZ, fly, table
 
 # JSBSim hands its matrices over as numpy.matrix, which NumPy frowns on.
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
@@ -42,7 +44,7 @@ def test_files_are_uniform_gentle_and_small(name: str) -> None:
     time, body = read(name)
     assert (FOLDER / f"{name}.csv").stat().st_size < 1_500_000
     np.testing.assert_allclose(np.diff(time), 1.0 / RATE_HZ, atol=1e-9)
-    assert 10.0 <= time[-1] <= 30.0
+    assert 10.0 <= time[-1] <= 45.0
     rate = np.degrees((body[:-1].inv() * body[1:]).magnitude()) * RATE_HZ
     assert rate[0] < 0.01, "begins in trimmed flight, at rest"
     assert rate.max() < 90.0, "an aircraft's rates, and no jump between rows"
@@ -97,24 +99,42 @@ def test_flown_again_writes_the_same_bytes(name: str) -> None:
     )
 
 
-def test_demo_flight_is_flown_exactly_on_the_demo_rig() -> None:
-    """`fullpose demo` flies it on vertical-4 at 1 kHz: exact at every sample and inside every limit."""
-    rows = np.loadtxt(FOLDER / "loop.csv", delimiter=",", skiprows=1)
-    flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:]), 1000.0)
-    attitude = dcm_from_quaternion(flight.q)
-    rig = builtin_rigs()["vertical-4"]
-    solution = solve(flight.time, attitude, rig, method="exact")
-    check = verify(flight.time, solution.angles, rig, attitude)
+def demo_flight(rate_hz: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Time (n,) [s] and attitude (n, 3, 3), body from reference, of the demo's flight."""
+    rows = np.loadtxt(FOLDER / f"{DEMO}.csv", delimiter=",", skiprows=1)
+    flight = resample(rows[:, 0], quaternion_from_ned(rows[:, 1:]), rate_hz)
+    return flight.time, dcm_from_quaternion(flight.q)
+
+
+def test_demo_flight_is_flown_exactly_on_the_demo_rig_and_touches_a_limit() -> None:
+    """`fullpose demo` plans it for vertical-limited at 1 kHz: exact at every sample and inside every limit."""
+    time, attitude = demo_flight(1000.0)
+    rig = builtin_rigs()[demo.RIG]
+    solution = solve(time, attitude, rig, method=demo.METHOD)
+    check = verify(time, solution.angles, rig, attitude)
     assert check.max_matrix_error < 1e-14
     assert solution.limited_samples == 0
     assert not check.violations
-    # Not at the limits' edge either: an operator's first flight should look calm.
+    # The inner frame comes to the end of its range, and stays inside it.
+    nearest = np.min(rig.position_max - solution.angles, axis=0)
+    assert 0.0 <= nearest[3] < np.radians(0.01)
+    # No faster than half of what it may: an operator's first flight should look calm.
     assert (check.peaks[:, 1] < 0.5 * rig.max_rate).all()
     assert (check.peaks[:, 2] < 0.5 * rig.max_acceleration).all()
 
 
-def test_demo_flight_is_the_example_loop() -> None:
-    assert (ROOT / "server/fullpose_server/demo_flights/loop.csv").read_bytes() == (FOLDER / "loop.csv").read_bytes()
+@pytest.mark.parametrize("name", ["vertical-3", "horizontal-3"])
+def test_no_three_axis_table_flies_the_demo_flight(name: str) -> None:
+    """Its nose goes by what each of them is singular at, faster than the outer frame can turn."""
+    time, attitude = demo_flight(200.0)
+    planned = plan(time, attitude, builtin_rigs()[name])
+    assert not planned.verdict.feasible
+    assert planned.verdict.statement.startswith("Infeasible")
+
+
+def test_demo_flight_is_the_example() -> None:
+    packaged = ROOT / "server/fullpose_server/demo_flights" / demo.FLIGHT
+    assert packaged.read_bytes() == (FOLDER / f"{DEMO}.csv").read_bytes()
 
 
 def feasible(method: str, rig_name: str, name: str) -> bool:

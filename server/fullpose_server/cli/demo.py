@@ -15,8 +15,8 @@ from fullpose_server.cli._exit import CommandError
 if TYPE_CHECKING:
     from fullpose_server.client import Client
 
-RIG, METHOD = "vertical-4", "plan"
-FLIGHT, CONVENTION, NAME = "loop.csv", "ned", "Loop, A-4 Skyhawk"
+RIG, METHOD = "vertical-limited", "plan"
+FLIGHT, CONVENTION, NAME = "loop_and_roll.csv", "ned", "Loop and roll, A-4 Skyhawk"
 PAUSE_S, LONGEST_PAUSE_S = 3.0, 60.0
 RENEW_S = 1.0
 LATCHED = ("estopped", "faulted")
