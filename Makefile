@@ -5,7 +5,7 @@ demo: ## installs, serves, a real flight is flying; the address is printed once 
 	@tools/demo
 
 quick: ## the gates that take a minute: format, lint, imports, types, the console's, the house's
-	@tools/setup dev
+	@GATES=quick tools/setup dev
 	@tools/gates quick
 
 test: ## installs what the tests need and runs every gate

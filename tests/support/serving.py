@@ -11,12 +11,20 @@ from pathlib import Path
 from tests.support.repository import PYTHONPATH
 
 COMMAND = (sys.executable, "-c", "from fullpose_server.cli import main; main()")
+NO_REAL_TIME = ("prlimit", "--rtprio=0:0")
+if os.geteuid() == 0:
+    NO_REAL_TIME += ("setpriv", "--bounding-set=-sys_nice", "--inh-caps=-sys_nice")
+
+
+def few_files(files: int) -> tuple[str, ...]:
+    """What starts a program that may have so many files open, and cannot ask for more."""
+    return ("prlimit", f"--nofile={files}:{files}")
 
 
 @contextmanager
-def running(*arguments: str | Path, files: int | None = None) -> Iterator[tuple["subprocess.Popen[str]", str]]:
+def running(*arguments: str | Path, within: tuple[str, ...] = ()) -> Iterator[tuple["subprocess.Popen[str]", str]]:
     """A process of the command line and the address that it prints first."""
-    process = start(*arguments, files=files)
+    process = start(*arguments, within=within)
     try:
         assert process.stdout is not None
         yield process, process.stdout.readline().strip()
@@ -26,10 +34,9 @@ def running(*arguments: str | Path, files: int | None = None) -> Iterator[tuple[
         process.communicate(timeout=60)
 
 
-def start(*arguments: str | Path, files: int | None = None, **env: str) -> "subprocess.Popen[str]":
-    """Start one; with `files` it may have no more of them open, and cannot ask for more."""
-    limited = [] if files is None else ["prlimit", f"--nofile={files}:{files}"]
-    command = [*limited, *COMMAND, *map(str, arguments)]
+def start(*arguments: str | Path, within: tuple[str, ...] = (), **env: str) -> "subprocess.Popen[str]":
+    """Start one, by a program that takes rights or files away from it."""
+    command = [*within, *COMMAND, *map(str, arguments)]
     return subprocess.Popen(
         command,
         stdout=subprocess.PIPE,

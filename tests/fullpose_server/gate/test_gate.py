@@ -16,7 +16,7 @@ import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from tests.support.serving import running
+from tests.support.serving import few_files, running
 from tests.support.sockets import connect
 from tests.support.waiting import until
 
@@ -161,7 +161,9 @@ def test_idle_connections_take_nothing_from_a_stop(tmp_path: Path) -> None:
     with ExitStack() as stack:
         resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
         stack.callback(resource.setrlimit, resource.RLIMIT_NOFILE, (soft, hard))
-        process, url = stack.enter_context(running("serve", "--port", "0", "--data-dir", tmp_path, files=limit))
+        process, url = stack.enter_context(
+            running("serve", "--port", "0", "--data-dir", tmp_path, within=few_files(limit))
+        )
         served = Served(process, url)
         for _ in range(2 * limit):
             stack.enter_context(socket.create_connection(served.at))
