@@ -81,7 +81,7 @@ def test_a_plan_edited_before_it_is_loaded_is_refused(
     edit(plan, what)
     error = refusal(rig.say("load", plan_folder=str(plan)))
     assert error.code == "bad_plan"
-    assert f"{plan}/{file}: " in error.message
+    assert error.message.startswith(f"{file}: ")
 
 
 @pytest.mark.parametrize(("edit", "what", "file"), EDITS, ids=[what for _, what, _ in EDITS])
@@ -92,7 +92,7 @@ def test_a_plan_edited_between_load_and_arm_is_refused(
     edit(plan, what)
     error = refusal(rig.say("arm"))
     assert error.code == "bad_plan"
-    assert f"{plan}/{file}: " in error.message
+    assert error.message.startswith(f"{file}: ")
 
 
 def resealed(folder: Path) -> None:
@@ -111,7 +111,7 @@ def test_another_sound_plan_in_the_place_of_the_one_that_was_made_is_refused_at_
     rig.tick()
     rig.must("connect")
     error = refusal(rig.say("load", plan_folder=str(plan), plan_hash=made))
-    assert f"{plan}/plan.json: plan_hash is " in error.message
+    assert error.message.startswith("plan.json: plan_hash is ")
     assert made[:16] in error.message
 
 
@@ -121,7 +121,7 @@ def test_another_sound_plan_in_the_place_of_the_one_that_was_loaded_is_refused_a
     loaded(rig, plan_folder=str(plan), plan_hash=read_plan(plan).info.plan_hash)
     resealed(plan)
     error = refusal(rig.say("arm"))
-    assert f"{plan}/plan.json: rate_hz was 500.0, is 250.0 since the plan was loaded" in error.message
+    assert error.message.startswith("plan.json: rate_hz was 500.0, is 250.0 since the plan was loaded")
 
 
 def test_a_plan_that_is_not_feasible_is_refused(rig: MadeUpRig, tmp_path: Path) -> None:
