@@ -7,6 +7,7 @@ class Decision(StrEnum):
     """The stage of the planner that decided whether a flight can be flown."""
 
     CHECKED = "checked"  # it can: every sample was checked
+    TOLERANCE = "tolerance"  # it can, within the tolerance asked for: every sample was checked
     POSITION = "position"  # no node path, for want of range
     RATE = "rate"  # no node path, for want of rate
     ACCELERATION = "acceleration"  # node paths, but none that was refined came inside the limits

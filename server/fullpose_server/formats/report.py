@@ -93,6 +93,7 @@ def verdict_report(plan: "Plan") -> dict[str, Any]:
             "decided_by": verdict.decided_by,
             "statement": verdict.statement,
             "grid_deg": _finite(math.degrees(verdict.grid)),
+            "least_tolerance_deg": _finite(math.degrees(verdict.least_tolerance)),
             "max_matrix_error_between_samples": _finite(verdict.between),
         },
         "leads": {

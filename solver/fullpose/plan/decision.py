@@ -1,4 +1,4 @@
-"""What becomes of a flight: a path inside every limit, or what closes the way and the least error all the same."""
+"""What becomes of a flight: an exact path inside every limit, or what closes the way and the least tolerance."""
 
 import math
 from dataclasses import dataclass, replace
@@ -7,8 +7,7 @@ import numpy as np
 
 from fullpose._typing import Array, Codes, Counts
 from fullpose.bounds import MET, limited_code
-from fullpose.plan.fallback import Fallback
-from fullpose.plan.least_error import BestEffort, afresh, least_error
+from fullpose.plan.least_tolerance import WHOLE, LeastTolerance, least_tolerance
 from fullpose.plan.node_paths import cheapest
 from fullpose.plan.strategies import State, Task, first_look, refined, search
 from fullpose.plan.three_axis import three_axis_path
@@ -49,7 +48,7 @@ class Flown:
 
 
 def fly(task: Task) -> Flown:
-    """A path of a four-axis rig, found by the table of attempts; else the least error."""
+    """A path of a four-axis rig, found by the table of attempts; else the least tolerance."""
     state = first_look(task)
     if state.cheapest.found:
         state = search(task, state)
@@ -67,7 +66,7 @@ def _inside(state: State, angles: Array, path: Path) -> Flown:
 
 
 def _outside(task: Task, state: State, path: Path) -> Flown:
-    """No path that was refined is inside every limit: the worst place of `path`, the best, and the least error."""
+    """No path that was refined is inside every limit: the worst place of `path`, the best, and the least tolerance."""
     problem = task.problem
     blocking, decided_by = _closed(problem, path)
     failed = Flown(
@@ -76,10 +75,18 @@ def _outside(task: Task, state: State, path: Path) -> Flown:
     )  # fmt: skip
     if not problem.options.best_effort:
         return failed
-    effort = least_error(problem, path.angles, task.fallback)
-    if not effort.limited.any() and problem.start_rate is None:  # not even that gave the attitude up
-        return _inside(state, effort.angles, path)
-    return replace(failed, angles=effort.angles, limited=effort.limited)
+    least = least_tolerance(problem, [path.angles, task.fallback.exact], task.progress)
+    if not least.limited.any() and problem.start_rate is None:  # not even that gave the attitude up
+        return _inside(state, least.angles, path)
+    return _given_up(problem, failed, least)
+
+
+def _given_up(problem: Problem, failed: Flown, least: LeastTolerance) -> Flown:
+    """A flight that is not exact: flown all the same where that is within the tolerance asked for."""
+    if least.tolerance <= problem.options.tolerance:
+        none = np.zeros_like(failed.limited)
+        return replace(failed, angles=least.angles, limited=none, decided_by=Decision.TOLERANCE, blocking=None)
+    return replace(failed, angles=least.angles, limited=least.limited)
 
 
 def _closed(problem: Problem, path: Path) -> tuple[Blocking, Decision]:
@@ -93,25 +100,30 @@ def _closed(problem: Problem, path: Path) -> tuple[Blocking, Decision]:
 
 
 def _without_node_path(task: Task, state: State) -> Flown:
-    """No node path leads through: the limit that closes the stage after the last one reached, and the least error."""
+    """No node path leads through: the limit that closes the stage after the last one reached, the least tolerance."""
     problem, closed = task.problem, state.cheapest
     n = len(problem)
     when = float(problem.time[state.query.samples[closed.reached]])
     blocking = Blocking(when, FRAMES[closed.frame], LIMITS[closed.limit])
-    angles = np.repeat(problem.rig.home[None], n, axis=0)
-    limited = np.full(n, limited_code(closed.frame, closed.limit), np.int16)
-    node_paths = state.node_paths
-    if problem.options.best_effort:
-        effort, node_paths = _least_error(task, state)
-        angles, limited = effort.angles, effort.limited
-    return Flown(
-        angles, np.zeros(n, np.int32), limited, CLOSED_BY[blocking.limit], blocking, state.query.grid, node_paths
-    )
+    failed = Flown(
+        np.repeat(problem.rig.home[None], n, axis=0), np.zeros(n, np.int32),
+        np.full(n, limited_code(closed.frame, closed.limit), np.int16), CLOSED_BY[blocking.limit], blocking,
+        state.query.grid, state.node_paths,
+    )  # fmt: skip
+    if not problem.options.best_effort:
+        return failed
+    path, node_paths = _least_violation(task, state)
+    paths = [task.fallback.exact] if path is None else [path.angles, task.fallback.exact]
+    least = least_tolerance(problem, paths, task.progress)
+    return _given_up(problem, replace(failed, node_paths=node_paths), least)
 
 
-def _least_error(task: Task, state: State) -> tuple[BestEffort, int]:
-    """(the least error from the node path that is least over the limits, the node paths refined for it)."""
+def _least_violation(task: Task, state: State) -> tuple[Path | None, int]:
+    """(an exact path that is least over the limits, of a flight too long to be looked at in one piece; the node paths
+    refined)."""
     problem = task.problem
+    if problem.time[-1] - problem.time[0] <= WHOLE:
+        return None, state.node_paths
     query = replace(state.query, grid=problem.options.grid, stretch=STRETCH, violation_cost=VIOLATION_COST)
     for slack in (0.0, WIDENED):
         node_path, query = cheapest(problem, replace(query, slack=slack), task.told(0.0, 0.5))
@@ -120,13 +132,12 @@ def _least_error(task: Task, state: State) -> tuple[BestEffort, int]:
         angles = smooth_curve(problem, query.samples, node_path)
         if largest_violation(problem.time, angles, rig_limits(problem.rig)).share > BROKEN:
             break
-        path = refined(task, angles)
-        return least_error(problem, path.angles, task.fallback), state.node_paths + 1
-    return afresh(problem, np.empty((0, 4)), task.fallback), state.node_paths
+        return refined(task, angles), state.node_paths + 1
+    return None, state.node_paths
 
 
 def fly_three_axis(problem: Problem) -> Flown:
-    """Without freedom: the Euler angles; where they leave the limits, the least error inside them."""
+    """Without freedom: the Euler angles; where they leave the limits, the least tolerance inside them."""
     angles = three_axis_path(problem.time, problem.attitude, problem.rig, problem.start)
     violation = largest_violation(problem.time, angles, rig_limits(problem.rig))
     iterations, limited = np.zeros(len(problem), np.int32), np.zeros(len(problem), np.int16)
@@ -136,5 +147,4 @@ def fly_three_axis(problem: Problem) -> Flown:
     if not problem.options.best_effort:
         return failed
     anywhere = replace(problem, start=None)  # its first pose is to give way like any other
-    effort = least_error(anywhere, angles, Fallback(anywhere))
-    return replace(failed, angles=effort.angles, limited=effort.limited)
+    return _given_up(problem, failed, least_tolerance(anywhere, [angles]))

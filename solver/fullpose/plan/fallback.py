@@ -3,14 +3,11 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from fullpose._typing import Array
 from fullpose.methods import METHODS
 from fullpose.preview.flight import PreviewFlight
 from fullpose.preview.options import PreviewOptions
 from fullpose.trajectory.problem import Problem
-from fullpose.verify import attitude_errors, payload_attitudes
 
 # [s] known and [s] between two trajectories, of the previews
 FORESIGHTS = ((4.0, 0.2), (8.0, 0.5))
@@ -42,12 +39,3 @@ class Fallback:
         every = (PreviewOptions(preview_s=known, replan_s=between) for known, between in FORESIGHTS)
         flights = (PreviewFlight(p.rig, options, p.start, p.time, p.attitude) for options in every)
         return tuple(flight.block(p.time, p.attitude).angles for flight in flights)
-
-    def closest(self) -> Array:
-        """A copy of the one with the least mean squared attitude error."""
-        p = self.problem
-
-        def missed(path: Array) -> float:
-            return float(np.mean(attitude_errors(payload_attitudes(p.rig, path), p.attitude)[0] ** 2))
-
-        return min((self.exact, *self.foreseen), key=missed).copy()

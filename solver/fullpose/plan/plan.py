@@ -15,12 +15,13 @@ from fullpose.plan.beam_path import attainable_rates
 from fullpose.plan.decision import Flown, fly, fly_three_axis
 from fullpose.plan.fallback import Fallback
 from fullpose.plan.strategies import Task
-from fullpose.plan.verdict import Margins, Verdict, check, margins, verdict_on
+from fullpose.plan.verdict import Margins, Verdict, check, margins, verdict_on, with_least_tolerance
 from fullpose.rig import Rig
 from fullpose.solution import Solution
 from fullpose.trajectory.curve import polish
 from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.problem import Problem
+from fullpose.vocabulary import Decision
 
 CONSTANT = 1e-14  # range of an entry of C up to which an attitude counts as constant: what rounding leaves
 
@@ -115,6 +116,9 @@ def _finished(problem: Problem, flown: Flown, stopwatch: Clock) -> Plan:
     angles = _polished(problem, flown)
     found = check(time, attitude, angles, rig)
     verdict = verdict_on(found, rig, flown.blocking, flown.decided_by, flown.grid)
+    exact = verdict.feasible and flown.decided_by is not Decision.TOLERANCE
+    if exact or problem.options.best_effort:
+        verdict = with_least_tolerance(verdict, found, exact)
     into, out = lead_in(time[:3], angles[:3], rig), lead_out(time[-3:], angles[-3:], rig)
     elapsed = stopwatch()
     solution = Solution(

@@ -1,7 +1,7 @@
 """Verdicts and margins: what a plan says about a flight, and how much room it leaves."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,10 @@ CLEAR = math.radians(1e-3)  # [rad] likewise, of a position limit
 
 STATEMENTS = {
     Decision.CHECKED: "Feasible: every sample checked by code apart from the planner.",
+    Decision.TOLERANCE: (
+        "Feasible within the tolerance: no exact path was found inside the limits, one within the tolerance was; every "
+        "sample checked by code apart from the planner."
+    ),
     Decision.POSITION: (
         "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
         "no path of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
@@ -54,6 +58,8 @@ class Verdict:
     statement: str
     between: float  # largest entry of F - C half-way between samples; nan where not looked at
     between_angle: float = math.nan  # [rad] the same as an angle
+    # [rad] of attitude for which it is inside every limit, the least that was found; 0: exact; nan: not looked for
+    least_tolerance: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -168,6 +174,28 @@ def verdict_on(found: Check, rig: Rig, blocking: Blocking | None, decided_by: De
     if blocking is None:
         statement = f"{statement} {between.sentence()}"
     return Verdict(blocking is None, blocking, decided_by, grid, statement, between.matrix, between.angle)
+
+
+def with_least_tolerance(verdict: Verdict, found: Check, exact: bool) -> Verdict:
+    """The verdict and the least tolerance that was looked for: none where the flight is `exact`."""
+    if exact:
+        return replace(verdict, least_tolerance=0.0)
+    if found.violations:
+        return verdict
+    tolerance = float(found.error.max())
+    said = (
+        f"With every frame free the smallest attitude tolerance found that keeps it inside every limit is "
+        f"{_rounded_up(math.degrees(tolerance)):g} deg; a wide search, no proof that none is smaller."
+    )
+    return replace(verdict, least_tolerance=tolerance, statement=f"{verdict.statement} {said}")
+
+
+def _rounded_up(value: float) -> float:
+    """Three digits, never less than the value."""
+    if value <= 0.0:
+        return 0.0
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return math.ceil(value / unit) * unit
 
 
 def between_samples(time: Array, attitude: Array, angles: Array, rig: Rig) -> Between:

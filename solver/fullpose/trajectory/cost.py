@@ -11,12 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fullpose._jit import kernel
-from fullpose._typing import Array, Integers
+from fullpose._typing import Array
 from fullpose.bounds import ACCELERATION, POSITION, RATE
 from fullpose.kinematics import (
-    jacobian,
-    payload_attitude,
-    rotation_error,
     singularity_measure,
     singularity_measures,
 )
@@ -128,70 +125,3 @@ def cost_bands(at: Iterate, basis: Basis, stride: int, cost: Cost, model: Quadra
                     H[first[k] + a, b - a] += dt * bend * va * values[k, b] * slope
     for j in range(size):
         H[j, 0] += TINY
-
-
-@kernel
-def _difference_bands(
-    kind: int, k: int, i: int, weight: float, at: Iterate, basis: Basis, row: Array, model: QuadraticModel
-) -> None:
-    """model += half the weight times frame i's rate or acceleration at sample k squared; row (ROW,) is overwritten."""
-    H, g = model
-    origin = fill_row(kind, k, i, at, basis, row)
-    value = difference(kind, k, i, at.time, at.d)
-    for a in range(ROW):
-        if row[a] == 0.0:
-            continue
-        u = 4 * (origin + a) + i
-        g[u] += weight * value * row[a]
-        for b in range(a, ROW):
-            if row[b] != 0.0:
-                H[u, 4 * (b - a)] += weight * row[a] * row[b]
-
-
-@kernel
-def error_bands(
-    axes: Integers, attitude: Array, at: Iterate, basis: Basis, stride: int, weight: float, cost: Cost,
-    model: QuadraticModel,
-) -> float:  # fmt: skip
-    """model <- the Gauss-Newton model of the attitude error squared, all four frames free; returns that error.
-
-    The integral of weight |e|^2 plus the rates' and accelerations' squares. Unknown 4 j + i is coefficient j of frame
-    i; `at.n` is ones, H (4 size, 4 ROW) upper bands.
-    """
-    time, d, _ = at
-    _, first, values = basis
-    H, g = model
-    F = np.empty((3, 3))
-    J = np.empty((3, 4))
-    e = np.empty(3)
-    row = np.empty(ROW)
-    count = time.shape[0]
-    total = 0.0
-    for k in range(0, count, stride):
-        dt = max(_interval(time, k, stride), 1e-9)
-        payload_attitude(axes, d[k], F)
-        size = rotation_error(F, attitude[k], e)
-        total += weight * dt * size * size
-        jacobian(axes, d[k], J)
-        for i in range(4):
-            if axes[i] < 0:
-                continue
-            push = J[0, i] * e[0] + J[1, i] * e[1] + J[2, i] * e[2]
-            for a in range(values.shape[1]):
-                u = 4 * (first[k] + a) + i
-                if values[k, a] == 0.0:
-                    continue
-                g[u] += 2.0 * weight * dt * push * values[k, a]
-                for j in range(4):
-                    dot = J[0, i] * J[0, j] + J[1, i] * J[1, j] + J[2, i] * J[2, j]
-                    for b in range(values.shape[1]):
-                        v = 4 * (first[k] + b) + j
-                        if v >= u:
-                            H[u, v - u] += 2.0 * weight * dt * dot * values[k, a] * values[k, b]
-            if k >= 1:
-                _difference_bands(RATE, k, i, 2.0 * cost.rate[i] * dt, at, basis, row, model)
-            if 1 <= k < count - 1:
-                _difference_bands(ACCELERATION, k, i, 2.0 * cost.acceleration[i] * dt, at, basis, row, model)
-    for u in range(g.shape[0]):
-        H[u, 0] += TINY
-    return total

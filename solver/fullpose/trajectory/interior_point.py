@@ -37,4 +37,6 @@ def solve_by_piqp(given: Matrices) -> Minimiser:
     solver.setup(given.P, given.q, given.A, given.b, G, None, h, given.lower, given.upper)
     status = STATUS.get(solver.solve(), Status.FAILED)
     x = np.asarray(solver.result.x)
-    return Minimiser(x, status if np.isfinite(x).all() else Status.FAILED)
+    duals = np.zeros(len(h) if bounded.all() else len(bounded))
+    duals[bounded] = solver.result.z_u
+    return Minimiser(x, status if np.isfinite(x).all() else Status.FAILED, duals)

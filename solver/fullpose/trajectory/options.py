@@ -30,7 +30,8 @@ class PlanOptions(Options):
     iterations: int = ranged(12, 1, 1000)  # of the refinement, at most
     alternatives: int = ranged(9, 0, 100)  # other node paths tried before the accelerations are called the obstacle
     window: float = ranged(12.0, 0.1, 1e4)  # [s] of one refinement problem; longer flights go window by window
-    best_effort: bool = True  # an infeasible flight is brought inside the limits, at the least attitude error
+    best_effort: bool = True  # an infeasible flight is brought inside the limits, at the least tolerance
+    tolerance: float = ranged(0.0, 0.0, math.pi)  # [rad] of attitude that may be missed where no exact path is found
     overlap: float = ranged(3.0, 0.0, 1e4)  # [s] that a window shares with the one before
 
     def __post_init__(self) -> None:

@@ -19,6 +19,7 @@ from fullpose.trajectory.linearisation import ROW, Row
 
 SLACK_COST = 100.0  # per whole limit and group; the rest of the cost is of the order of one a second
 SLACK_CURVATURE = 1e-3  # makes the slacks unique
+NO_DUALS = np.zeros(0)
 Matrix = Any  # a SciPy sparse matrix, compressed columns
 
 
@@ -78,10 +79,11 @@ class Matrices:
 
 
 class Minimiser(NamedTuple):
-    """x, and how good it is."""
+    """x, how good it is, and the multipliers of the rows Gx <= h where the solver has them."""
 
     x: Array
     status: Status
+    duals: Array = NO_DUALS
 
 
 class Solver(Protocol):
@@ -150,7 +152,7 @@ def _equalities(problem: QuadraticProgramme, size: int) -> tuple[Matrix | None, 
 
 def solve_programme(problem: QuadraticProgramme, solver: Solver) -> Answer:
     """The minimiser of a programme, in its own unknowns."""
-    x, status = solver(matrices(problem))
+    x, status, _ = solver(matrices(problem))
     begin, end = problem.free
     coefficients = np.zeros(len(problem.model.g))
     if status is not Status.FAILED:

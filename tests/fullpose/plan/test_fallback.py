@@ -81,17 +81,6 @@ def test_the_paths_are_inside_the_limits_and_made_once() -> None:
     assert all(again is path for again, path in zip(fallback.foreseen, paths[1:], strict=True))
 
 
-def test_the_closest_is_a_copy_of_the_one_that_misses_least() -> None:
-    rig = builtin_rigs()["vertical-limited"]
-    time, attitude = tumble(3, 200.0)
-    fallback = Fallback(Problem(time, attitude, rig))
-    paths = (fallback.exact, *fallback.foreseen)
-    missed = [np.mean(attitude_errors(payload_attitudes(rig, path), attitude)[0] ** 2) for path in paths]
-    closest = fallback.closest()
-    assert np.array_equal(closest, paths[int(np.argmin(missed))])
-    assert not any(np.shares_memory(closest, path) for path in paths)
-
-
 def test_a_path_that_misses_the_attitude_is_none() -> None:
     rig = some_limits(23)
     time, attitude = tumble(23, 12.0)

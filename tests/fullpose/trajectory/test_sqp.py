@@ -11,7 +11,7 @@ from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.trajectory.bspline import spline_basis
 from fullpose.trajectory.constraints import exceeded, largest_violation, lead_cuts, rig_limits, rows_within_reach
-from fullpose.trajectory.cost import Cost, QuadraticModel, cost_bands, cost_of, error_bands, path_cost
+from fullpose.trajectory.cost import Cost, QuadraticModel, cost_bands, cost_of, path_cost
 from fullpose.trajectory.curve import null_vectors
 from fullpose.trajectory.linearisation import (
     POSITION_UNIT,
@@ -111,30 +111,6 @@ def test_cost_bands_are_the_gradient_of_the_cost(at):
         bend = (cost(c) - 2 * cost(zero) + cost(-c)) / 1e-8
         assert g[j] == pytest.approx(slope, rel=1e-5, abs=1e-6)
         assert H[j, 0] == pytest.approx(bend, rel=1e-3)
-
-
-def test_error_bands_are_the_gradient_of_the_attitude_error(flight):
-    problem, d = flight
-    t, C = problem.time, problem.attitude
-    random = np.random.default_rng(2)
-    basis = spline_basis(t, 0.05)
-    x = d + 0.05 * np.sin(np.outer(t, random.uniform(1, 3, 4)))
-    nothing = Cost(np.zeros(4), np.zeros(4), np.zeros(4), 0.0, 1.0, 0.0)
-
-    def total(x):
-        model = QuadraticModel(np.zeros((4 * basis.size, 4 * ROW)), np.zeros(4 * basis.size))
-        at = Iterate(t, x, np.ones_like(x))
-        return error_bands(RIG.axes, C, at, basis, 1, 1.0, nothing, model), model.g
-
-    _, g = total(x)
-    for at in range(9, 4 * basis.size - 30, 41):
-        frame = at % 4
-        bump = np.zeros(basis.size)
-        bump[at // 4] = 1e-5
-        step = np.zeros_like(x)
-        displaced(np.zeros_like(x), np.tile(np.eye(4)[frame], (len(t), 1)), basis, bump, step)
-        slope = (total(x + step)[0] - total(x - step)[0]) / 2e-5
-        assert g[at] == pytest.approx(slope, rel=2e-2, abs=1e-6)  # the model leaves the error's own curvature out
 
 
 def test_refinement_brings_a_path_inside_exact_and_cheaper(flight):

@@ -3816,7 +3816,7 @@ export interface components {
         VerdictOut: {
             /**
              * Decided By
-             * @description checked; or the limit that closes the way, start_rate, or three-axis
+             * @description checked; tolerance; or the limit that closes the way, start_rate, or three-axis
              */
             decided_by: string;
             /**
@@ -3824,6 +3824,11 @@ export interface components {
              * @description Of the search; null where there was none
              */
             grid_deg: number | null;
+            /**
+             * Least Tolerance Deg
+             * @description The smallest attitude tolerance found for which the flight is inside every limit; 0: exact; null: not looked for
+             */
+            least_tolerance_deg?: number | null;
             /** Max Matrix Error Between Samples */
             max_matrix_error_between_samples: number | null;
             /** Statement */

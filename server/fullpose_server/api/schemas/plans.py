@@ -85,9 +85,16 @@ class BlockingOut(Wire):
 class VerdictOut(Wire):
     """What the verdict of method plan rests on."""
 
-    decided_by: str = Field(description="checked; or the limit that closes the way, start_rate, or three-axis")
+    decided_by: str = Field(
+        description="checked; tolerance; or the limit that closes the way, start_rate, or three-axis"
+    )
     statement: str
     grid_deg: float | None = Field(description="Of the search; null where there was none")
+    least_tolerance_deg: float | None = Field(
+        default=None,
+        description="The smallest attitude tolerance found for which the flight is inside every limit; 0: exact; null: "
+        "not looked for",
+    )
     max_matrix_error_between_samples: float | None
 
 

@@ -1,0 +1,164 @@
+"""The least tolerance next to a path: the least largest attitude error inside every limit (mathematics, section 13).
+
+Sequential quadratic programming on the coefficients of all frames. With e the rotation vector of F C^T and J the
+Jacobian, |e|^2 <= tau has the gradient 2 J^T e and, by Gauss-Newton, the Hessian 2 J^T J, weighed by the multipliers of
+the programme before (Nocedal and Wright, Numerical Optimization, section 18.1). The limits are linear and met by every
+iterate; a step is cut until the merit falls.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from fullpose._typing import Array
+from fullpose.trajectory.bspline import WIDTH
+from fullpose.trajectory.frame_spline import difference_matrix, finite_limits
+from fullpose.trajectory.qp import Matrices, Matrix, Solver, Status
+from fullpose.trajectory.tolerance_mesh import DAMPING, Mesh
+
+TRUST = 0.6  # [rad] a coefficient moves in one iteration at most
+FRACTIONS = (1.0, 0.5, 0.25, 0.1)  # of a step that are tried
+SHRINK = 0.2  # of the trust region where none of them pays
+SETTLED = 1e-3  # share of the merit below which an improvement is none
+STILL = 1e-7  # [rad] a step below which nothing moves
+SMOOTH = 1e-4  # of the mean acceleration squared as a share of its limit
+ROWS_FROM = 0.2  # share of the largest error squared from which a sample has a row
+FLATTEST = 1e-12  # [rad^2] an error squared that errors are measured against at least
+PEAKED = 8  # power of the errors squared that the first multipliers follow
+FAR = 1e3  # of tau: beyond every error
+RIGID = 1e-9  # curvature of tau, which is linear
+
+
+@dataclass(frozen=True)
+class Aim:
+    """tau >= floor costs `largest` a unit, the mean squared error `mean` a unit: what the two stages differ in."""
+
+    largest: float
+    mean: float
+    floor: float = 0.0  # [rad^2]
+
+
+TOLERANCE = Aim(largest=1.0, mean=0.02)  # the least tolerance first
+
+
+def within(tolerance: float) -> Aim:
+    """The least mean squared error inside a tolerance [rad]."""
+    return Aim(largest=100.0, mean=1.0, floor=tolerance**2)
+
+
+@dataclass(frozen=True)
+class Minimax:
+    """Unknowns of the mesh and their largest error [rad] at its samples."""
+
+    unknowns: Array
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class _Iterate:
+    """Where the programme is linearised; errors squared count in `unit` [rad^2]."""
+
+    c: Array
+    angle: Array  # (k,) [rad]
+    unit: float
+    multipliers: Array  # (k,)
+
+
+def minimax(mesh: Mesh, c: Array, aim: Aim, solver: Solver, iterations: int) -> Minimax:
+    """From unknowns c inside the limits: the least of the aim next to them."""
+    form = _smoothness(mesh)
+
+    def merit(angle: Array, c: Array, unit: float) -> float:
+        largest = max(0.0, float(angle.max()) ** 2 - aim.floor)
+        mean = float(np.mean(angle**2))
+        return (aim.largest * largest + aim.mean * mean) / unit + SMOOTH * float(c @ (form @ c))
+
+    angle = mesh.errors(c)
+    share = np.maximum(angle**2 / max(float(angle.max()) ** 2, FLATTEST), 1e-9) ** PEAKED
+    multipliers = aim.largest * share / share.sum() if aim.floor == 0.0 else np.zeros(len(angle))
+    trust = TRUST
+    for _ in range(iterations):
+        at = _Iterate(c, angle, max(float(angle.max()) ** 2, FLATTEST), multipliers)
+        answer = _step(mesh, at, aim, form, trust, solver)
+        if answer is None:
+            break
+        step, multipliers = answer
+        now = merit(angle, c, at.unit)
+        for fraction in FRACTIONS:
+            moved = c + fraction * step
+            after = mesh.errors(moved)
+            gain = now - merit(after, moved, at.unit)
+            if gain > 0.0:
+                break
+        else:
+            trust *= SHRINK
+            if trust < STILL:
+                break
+            continue
+        c, angle = moved, after
+        shift = fraction * float(np.abs(step).max())
+        trust = min(TRUST, 2.0 * trust) if fraction == 1.0 else max(fraction, 0.5) * trust
+        if gain < SETTLED * now or shift < STILL:
+            break
+    return Minimax(c, float(angle.max()))
+
+
+def _smoothness(mesh: Mesh) -> Matrix:
+    """The mean acceleration squared as a share of its limit, a quadratic form of the unknowns."""
+    acceleration = finite_limits(mesh.rig)[1][mesh.columns]
+    bend = difference_matrix(mesh.spline.size, 2)
+    D = sparse.kron(bend, sparse.diags(1.0 / (acceleration * mesh.spline.spacing**2)))
+    return (D.T @ D) / mesh.spline.size
+
+
+def _step(
+    mesh: Mesh, at: _Iterate, aim: Aim, form: Matrix, trust: float, solver: Solver
+) -> tuple[Array, Array] | None:  # fmt: skip
+    """(the step (n,), the multipliers (k,)) of the quadratic programme; None where the solver has none."""
+    n, k, limits = mesh.unknowns, len(at.angle), mesh.limits
+    e, J = mesh.model(at.c)
+    mean = 2.0 * aim.mean / (k * at.unit)
+    H = mesh.normal_matrix(J, 2.0 * at.multipliers / at.unit + mean)
+    H = H + 2.0 * SMOOTH * form + DAMPING * sparse.identity(n)
+    gradients = _gradients(mesh, e, J)
+    square = at.angle**2
+    rows = np.flatnonzero(square >= ROWS_FROM * max(float(square.max()), aim.floor))
+    g = mean * np.asarray(gradients.sum(axis=0)).ravel() + 2.0 * SMOOTH * (form @ at.c)
+    errors = sparse.hstack([(2.0 / at.unit) * gradients[rows], sparse.csc_matrix(np.full((len(rows), 1), -1.0))])
+    G = sparse.vstack([errors, sparse.hstack([limits.G, _column(limits.G)])], format="csc")
+    room = np.maximum(limits.h - limits.G @ at.c, 0.0)
+    answer = solver(
+        Matrices(
+            P=sparse.block_diag([H, np.array([[RIGID]])], format="csc"),
+            q=np.append(g, aim.largest),
+            G=G,
+            h=np.concatenate([-square[rows] / at.unit, room]),
+            A=None
+            if mesh.A is None
+            else sparse.hstack([mesh.A, sparse.csc_matrix((mesh.A.shape[0], 1))], format="csc"),
+            b=None if mesh.A is None else np.zeros(mesh.A.shape[0]),
+            lower=np.append(np.minimum(np.maximum(-trust, limits.low - at.c), 0.0), aim.floor / at.unit),
+            upper=np.append(np.maximum(np.minimum(trust, limits.high - at.c), 0.0), FAR + aim.floor / at.unit),
+        )
+    )
+    if answer.status is Status.FAILED or not mesh.keeps_limits(at.c + answer.x[:n]):
+        return None
+    multipliers = np.zeros(k)
+    multipliers[rows] = np.maximum(answer.duals[: len(rows)], 0.0)
+    return answer.x[:n], multipliers
+
+
+def _column(rows: Matrix) -> Matrix:
+    """Of zeros: the rows do not depend on tau."""
+    return sparse.csc_matrix((rows.shape[0], 1))
+
+
+def _gradients(mesh: Mesh, e: Array, J: Array) -> Matrix:
+    """(k, n): J^T e of each sample by the unknowns."""
+    k, m = len(e), len(mesh.columns)
+    push = np.einsum("kr,krp->kp", e, J[:, :, mesh.columns])
+    data = mesh.spline.values[:, :, None] * push[:, None, :]  # (k, WIDTH, m)
+    column = (mesh.spline.first[:, None] + np.arange(WIDTH))[:, :, None] * m + np.arange(m)
+    row = np.repeat(np.arange(k), WIDTH * m)
+    return sparse.csr_matrix((data.ravel(), (row, column.ravel())), shape=(k, mesh.unknowns))
