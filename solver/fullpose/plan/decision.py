@@ -7,7 +7,7 @@ import numpy as np
 
 from fullpose._typing import Array, Codes, Counts
 from fullpose.bounds import MET, limited_code
-from fullpose.plan.least_tolerance import WHOLE, LeastTolerance, least_tolerance
+from fullpose.plan.least_tolerance import BRIEF, LeastTolerance, least_tolerance
 from fullpose.plan.node_paths import cheapest
 from fullpose.plan.strategies import State, Task, first_look, refined, search
 from fullpose.plan.three_axis import three_axis_path
@@ -122,7 +122,7 @@ def _least_violation(task: Task, state: State) -> tuple[Path | None, int]:
     """(an exact path that is least over the limits, of a flight too long to be looked at in one piece; the node paths
     refined)."""
     problem = task.problem
-    if problem.time[-1] - problem.time[0] <= WHOLE:
+    if problem.time[-1] - problem.time[0] <= BRIEF:
         return None, state.node_paths
     query = replace(state.query, grid=problem.options.grid, stretch=STRETCH, violation_cost=VIOLATION_COST)
     for slack in (0.0, WIDENED):

@@ -43,7 +43,7 @@ def exact_again(problem: Problem, angles: Array) -> tuple[Array, NDArray[np.bool
 
 
 def _weights(time: Array, near: NDArray[np.bool_]) -> Array:
-    """1 deep inside the runs of samples `near` (n,), 0 outside, and a smooth way over `RAMP` between."""
+    """1 deep inside the runs of samples `near` (n,), 0 outside, and smoothly between, over `RAMP`."""
     n = len(time)
     far = np.flatnonzero(~near)
     if not far.size:

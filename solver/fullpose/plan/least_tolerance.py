@@ -24,7 +24,7 @@ from fullpose.trajectory.problem import Problem
 from fullpose.trajectory.tolerance_mesh import End
 from fullpose.verify import attitude_errors, payload_attitudes
 
-WHOLE = 30.0  # [s] of a stretch that is looked at in one piece
+BRIEF = 30.0  # [s] of a stretch that is looked at in one piece
 PIECE, DECIDED = 20.0, 15.0  # [s] of a longer one, and of them what is kept
 PADDING = 2.0  # [s] of the exact path given up on each side of a place outside the limits
 APART = 8  # samples of the exact path at least between two stretches
@@ -55,7 +55,7 @@ def least_tolerance(problem: Problem, paths: Sequence[Array], progress: Progress
         if progress is not None:
             progress(n - 1, n)
 
-    brief = time[-1] - time[0] <= WHOLE
+    brief = time[-1] - time[0] <= BRIEF
     angles = _mended(problem, paths[0], heard) if paths and not brief else None
     if angles is None:
         angles = _in_pieces(problem, paths, heard)
@@ -91,12 +91,12 @@ def _following(problem: Problem, paths: Sequence[Array]) -> Array:
 
 
 def _mended(problem: Problem, exact: Array, heard: Heard) -> Array | None:
-    """`exact` (n, 4) [rad] with the stretches around the places outside the limits solved anew; None: no way."""
+    """`exact` (n, 4) [rad] with the stretches around the places outside the limits solved anew; None: not so."""
     time = problem.time
     n = len(time)
     solved: list[tuple[int, Solved]] = []
     for begin, end in _stretches(problem, exact):
-        if time[end - 1] - time[begin] > WHOLE:
+        if time[end - 1] - time[begin] > BRIEF:
             return None
         part = problem.part(begin, end)
         ends = (
@@ -143,7 +143,7 @@ def _in_pieces(problem: Problem, paths: Sequence[Array], heard: Heard) -> Array 
     x = np.empty((n, 4))
     begin, tolerance = 0, 0.0
     while True:
-        end = n if time[-1] - time[begin] <= WHOLE else int(np.searchsorted(time, time[begin] + PIECE))
+        end = n if time[-1] - time[begin] <= BRIEF else int(np.searchsorted(time, time[begin] + PIECE))
         part = problem.part(begin, end)
         ends = _start_of(part) if begin == 0 else joined(time[:end], x[:end], begin), None
         found = search_stretch(part, ends, [path[begin:end] for path in paths], heard)

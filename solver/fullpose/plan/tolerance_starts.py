@@ -1,7 +1,7 @@
 """Where the least tolerance is looked for: paths, far apart, that an optimisation which is local begins from.
 
 None needs to be inside the limits. A four-axis rig's are the exact paths of both charts at a constant angle, which lie
-in different homotopy classes; every rig's are the ways of the beam search over all frames, forward in time and
+in different homotopy classes; every rig's are those of the beam search over all frames, forward in time and
 backward.
 """
 
@@ -27,8 +27,8 @@ CONSTANTS = 8  # angles a turn that a chart's angle is held at
 STAGE = 0.1  # [s]
 FEWEST = 3  # stages of a search
 SEARCHES = ((500, False), (500, True), (2000, False))  # states kept a stage, and whether backward in time
-WAYS = 5  # of each search
-POWER = 6.0  # of the attitude error that a way costs: the largest decides
+PATHS = 5  # of each search
+POWER = 6.0  # of the attitude error that a path costs: the largest decides
 LEVELS = 6  # of each frame that first poses are tried from, at most
 APART = math.radians(60.0)  # between two of them
 DESCENTS = 20
@@ -36,7 +36,7 @@ NO_FARTHER = math.radians(20.0)  # than the nearest first pose from the attitude
 SAME = math.radians(4.0)  # first poses as near are one
 ALONG = (0.0, 0.3, -0.3)  # [rad/s] along the self-motion, at first
 SWEEPS = 8
-TURNS = 1.5  # from home on either side
+TURNS_APART = 1.5  # from home on either side
 
 
 def starts(problem: Problem, first: Array | None) -> Iterator[Array]:
@@ -51,11 +51,11 @@ def starts(problem: Problem, first: Array | None) -> Iterator[Array]:
     for beam, backward in SEARCHES:
         if backward:
             reverse = np.ascontiguousarray(attitude[::-1])
-            found = _ways(stages[-1] - stages[::-1], reverse, rig, None, beam)[:, ::-1]
+            found = _searched(stages[-1] - stages[::-1], reverse, rig, None, beam)[:, ::-1]
         else:
-            found = _ways(stages, attitude, rig, first, beam)
-        for way in found:
-            yield np.asarray(CubicSpline(stages, way)(time))
+            found = _searched(stages, attitude, rig, first, beam)
+        for poses in found:
+            yield np.asarray(CubicSpline(stages, poses)(time))
 
 
 def _constant_angles(problem: Problem) -> Iterator[Array]:
@@ -80,19 +80,19 @@ def chart_path(horizontal: bool, base: bool, attitude: Array, angle: float, bran
             inner_chart(horizontal, attitude[k], angle, branch, path[k])
 
 
-def _ways(time: Array, attitude: Array, rig: Rig, first: Array | None, beam: int) -> Array:
-    """Up to `WAYS` ways (w, k, 4) [rad] at the stages' time (k,) [s], attitude (k, 3, 3)."""
+def _searched(time: Array, attitude: Array, rig: Rig, first: Array | None, beam: int) -> Array:
+    """Up to `PATHS` paths (w, k, 4) [rad] at the stages' time (k,) [s], attitude (k, 3, 3)."""
     table, body = limit_table(rig), body_rates(time, attitude)
     poses = first_poses(attitude[0], rig) if first is None else first[:1].copy()
     if first is not None and len(first) > 1:
         rates = first[1:2].copy()
     else:
         poses, rates = _in_motion(rig, body[0], poses)
-    ways = np.empty((WAYS, len(time), 4))
+    paths = np.empty((PATHS, len(time), 4))
     count = attitude_search(
-        Search(rig.axes, table, POWER), AttitudeStages(time, attitude, body), poses, rates, beam, ways
+        Search(rig.axes, table, POWER), AttitudeStages(time, attitude, body), poses, rates, beam, paths
     )
-    return ways[:count]
+    return paths[:count]
 
 
 def _in_motion(rig: Rig, body: Array, poses: Array) -> tuple[Array, Array]:
@@ -116,8 +116,8 @@ def first_poses(attitude: Array, rig: Rig) -> Array:
             continue
         low, high = -math.pi, math.pi
         if np.isfinite(rig.position_max[i]):
-            low = max(rig.position_min[i], rig.home[i] - TURNS * TURN)
-            high = max(min(rig.position_max[i], rig.home[i] + TURNS * TURN), low)
+            low = max(rig.position_min[i], rig.home[i] - TURNS_APART * TURN)
+            high = max(min(rig.position_max[i], rig.home[i] + TURNS_APART * TURN), low)
         count = int(np.clip(math.ceil((high - low) / APART), 2, LEVELS))
         levels.append(low + (high - low) * (np.arange(count) + 0.5) / count)
     d = np.stack(np.meshgrid(*levels, indexing="ij"), axis=-1).reshape(-1, 4)
@@ -179,14 +179,14 @@ def body_rates(time: Array, attitude: Array) -> Array:
     """The body's rates (k, 3) [rad/s] over the interval before each of attitude (k, 3, 3); the first is the second."""
     k = len(time)
     turned = np.empty((k, 3))
-    turns(attitude, turned)
+    rotation_vectors(attitude, turned)
     turned[1:] /= np.diff(time)[:, None]
     turned[0] = turned[1]
     return turned
 
 
 @kernel
-def turns(attitude: Array, turned: Array) -> None:
+def rotation_vectors(attitude: Array, turned: Array) -> None:
     """turned (k, 3) [rad] <- the rotation vector from each of attitude (k, 3, 3) to the next; the first is left."""
     for k in range(1, attitude.shape[0]):
         rotation_error(attitude[k], attitude[k - 1], turned[k])

@@ -1,4 +1,4 @@
-"""The way of a rig that cannot hold the attitude: a beam search over all frames and their rates.
+"""The path of a rig that cannot hold the attitude: a beam search over all frames and their rates.
 
 A state is a pose with its rates, not tied to the attitude; its cost is the attitude error, at a high power, so that the
 largest error decides. Each stage a state is carried on by a few steps inside the box that position, rate, acceleration
@@ -20,17 +20,17 @@ from fullpose.kinematics import jacobian, payload_attitude, rotation_error
 from fullpose.limits import ACCELERATION, MAX, RATE, Box, empty_box, limit_box
 
 CELLS = 1 << 16
-PLACE = math.radians(12.0)  # [rad] width of a cell
+POSE_CELL = math.radians(12.0)  # [rad] width of a cell
 RATE_CELLS = 8.0  # of a rate limit, or of what a stage's acceleration changes twice over
 PUSHES = 4  # of each frame: to either end of its box, brake, coast
 SWEEPS = 4  # over the frames
-DIFFERENT = 0.5  # [rad] between two ways, at least, in some frame at some stage
+DIFFERENT = 0.5  # [rad] between two paths, at least, in some frame at some stage
 RATE_GAIN = 0.5  # of the body rate's error over a stage beside the attitude's
 EASE = 1e-3  # of a step beside the errors: what they leave free stays small
 
 
 class AttitudeStages(NamedTuple):
-    """What the way should meet."""
+    """What the path should meet."""
 
     time: Array  # (k,) [s]
     attitude: Array  # (k, 3, 3)
@@ -95,7 +95,7 @@ def cell(table: Array, h: float, x: Array, rate: Array) -> int:
         angle = x[i]
         if math.isinf(table[MAX, i]):
             angle -= TURN * math.floor(angle / TURN)
-        key = (key ^ int(math.floor(angle / PLACE) + 1000)) * 16777619 & 0x7FFFFFFFFFFF
+        key = (key ^ int(math.floor(angle / POSE_CELL) + 1000)) * 16777619 & 0x7FFFFFFFFFFF
         width = max(min(2.0 * table[ACCELERATION, i] * h, table[RATE, i] / RATE_CELLS), 1e-3)
         if width < np.inf:
             key = (key ^ int(math.floor(rate[i] / width) + 100000)) * 16777619 & 0x7FFFFFFFFFFF
@@ -235,9 +235,9 @@ def keep_cheapest(reached: Reached, count: int, beam: int, number: int, tree: Tr
 
 @kernel
 def attitude_search(
-    search: Search, stages: AttitudeStages, poses: Array, rates: Array, beam: int, ways: Array
+    search: Search, stages: AttitudeStages, poses: Array, rates: Array, beam: int, paths: Array
 ) -> int:  # fmt: skip
-    """ways (w, k, 4) [rad] <- the cheapest ways found that differ; returns how many.
+    """paths (w, k, 4) [rad] <- the cheapest paths found that differ; returns how many.
 
     poses, rates (m, 4) [rad, rad/s]: where it may begin; beam: states kept a stage.
     """
@@ -263,28 +263,28 @@ def attitude_search(
         for b in range(count):
             filled = branch(search, stage, tree, b, room, reached, filled)
         count = keep_cheapest(reached, filled, beam, number, tree)
-    return different(tree, count, ways)
+    return different(tree, count, paths)
 
 
 @kernel
-def different(tree: Tree, count: int, ways: Array) -> int:
-    """ways (w, k, 4) <- to the states of the last stage, cheapest first, those that are `DIFFERENT` somewhere."""
+def different(tree: Tree, count: int, paths: Array) -> int:
+    """paths (w, k, 4) <- to the states of the last stage, cheapest first, those that are `DIFFERENT` somewhere."""
     k = tree.pose.shape[0]
     found = 0
     for b in range(count):
-        if found == ways.shape[0]:
+        if found == paths.shape[0]:
             break
         state = b
         for stage in range(k - 1, -1, -1):
             for i in range(4):
-                ways[found, stage, i] = tree.pose[stage, state, i]
+                paths[found, stage, i] = tree.pose[stage, state, i]
             state = tree.parent[stage, state]
         new = True
         for w in range(found):
             apart = 0.0
             for stage in range(k):
                 for i in range(4):
-                    apart = max(apart, abs(ways[found, stage, i] - ways[w, stage, i]))
+                    apart = max(apart, abs(paths[found, stage, i] - paths[w, stage, i]))
             if apart < DIFFERENT:
                 new = False
         if new:

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from fullpose._typing import Array
+from fullpose._typing import Array, Integers
 from fullpose.trajectory.bspline import WIDTH
-from fullpose.trajectory.frame_spline import difference_matrix, finite_limits
 from fullpose.trajectory.qp import Matrices, Matrix, Solver, Status
 from fullpose.trajectory.tolerance_mesh import DAMPING, Mesh
 
@@ -67,12 +66,11 @@ class _Iterate:
 
 def minimax(mesh: Mesh, c: Array, aim: Aim, solver: Solver, iterations: int) -> Minimax:
     """From unknowns c inside the limits: the least of the aim next to them."""
-    form = _smoothness(mesh)
 
     def merit(angle: Array, c: Array, unit: float) -> float:
         largest = max(0.0, float(angle.max()) ** 2 - aim.floor)
         mean = float(np.mean(angle**2))
-        return (aim.largest * largest + aim.mean * mean) / unit + SMOOTH * float(c @ (form @ c))
+        return (aim.largest * largest + aim.mean * mean) / unit + SMOOTH * _quadratic(mesh, c)
 
     angle = mesh.errors(c)
     share = np.maximum(angle**2 / max(float(angle.max()) ** 2, FLATTEST), 1e-9) ** PEAKED
@@ -80,7 +78,7 @@ def minimax(mesh: Mesh, c: Array, aim: Aim, solver: Solver, iterations: int) -> 
     trust = TRUST
     for _ in range(iterations):
         at = _Iterate(c, angle, max(float(angle.max()) ** 2, FLATTEST), multipliers)
-        answer = _step(mesh, at, aim, form, trust, solver)
+        answer = _step(mesh, at, aim, trust, solver)
         if answer is None:
             break
         step, multipliers = answer
@@ -104,39 +102,44 @@ def minimax(mesh: Mesh, c: Array, aim: Aim, solver: Solver, iterations: int) -> 
     return Minimax(c, float(angle.max()))
 
 
-def _smoothness(mesh: Mesh) -> Matrix:
-    """The mean acceleration squared as a share of its limit, a quadratic form of the unknowns."""
-    acceleration = finite_limits(mesh.rig)[1][mesh.columns]
-    bend = difference_matrix(mesh.spline.size, 2)
-    D = sparse.kron(bend, sparse.diags(1.0 / (acceleration * mesh.spline.spacing**2)))
-    return (D.T @ D) / mesh.spline.size
+def _quadratic(mesh: Mesh, c: Array) -> float:
+    """The mean acceleration squared as a share of its limit, of unknowns c (n,)."""
+    return float(c @ _times(mesh.smoothness, c))
+
+
+def _times(bands: Array, c: Array) -> Array:
+    """The symmetric matrix of upper bands (n, w) times c (n,)."""
+    n = len(c)
+    product = bands[:, 0] * c
+    for b in np.flatnonzero(bands[:, 1:].any(axis=0)) + 1:
+        product[: n - b] += bands[: n - b, b] * c[b:]
+        product[b:] += bands[: n - b, b] * c[: n - b]
+    return np.asarray(product)
 
 
 def _step(
-    mesh: Mesh, at: _Iterate, aim: Aim, form: Matrix, trust: float, solver: Solver
+    mesh: Mesh, at: _Iterate, aim: Aim, trust: float, solver: Solver
 ) -> tuple[Array, Array] | None:  # fmt: skip
     """(the step (n,), the multipliers (k,)) of the quadratic programme; None where the solver has none."""
     n, k, limits = mesh.unknowns, len(at.angle), mesh.limits
     e, J = mesh.model(at.c)
     mean = 2.0 * aim.mean / (k * at.unit)
-    H = mesh.normal_matrix(J, 2.0 * at.multipliers / at.unit + mean)
-    H = H + 2.0 * SMOOTH * form + DAMPING * sparse.identity(n)
-    gradients = _gradients(mesh, e, J)
+    H = mesh.normal_bands(J, 2.0 * at.multipliers / at.unit + mean) + 2.0 * SMOOTH * mesh.smoothness
+    H[:, 0] += DAMPING
+    gradients = _gradients(mesh, e, J)  # (k, WIDTH, m)
     square = at.angle**2
     rows = np.flatnonzero(square >= ROWS_FROM * max(float(square.max()), aim.floor))
-    g = mean * np.asarray(gradients.sum(axis=0)).ravel() + 2.0 * SMOOTH * (form @ at.c)
-    errors = sparse.hstack([(2.0 / at.unit) * gradients[rows], sparse.csc_matrix(np.full((len(rows), 1), -1.0))])
-    G = sparse.vstack([errors, sparse.hstack([limits.G, _column(limits.G)])], format="csc")
+    g = np.zeros((mesh.spline.size, len(mesh.columns)))
+    np.add.at(g, mesh.spline.first[:, None] + np.arange(WIDTH), mean * gradients)
+    g = g.ravel() + 2.0 * SMOOTH * _times(mesh.smoothness, at.c)
     room = np.maximum(limits.h - limits.G @ at.c, 0.0)
     answer = solver(
         Matrices(
-            P=sparse.block_diag([H, np.array([[RIGID]])], format="csc"),
+            P=mesh.upper(H, RIGID),
             q=np.append(g, aim.largest),
-            G=G,
+            G=_rows(mesh, (2.0 / at.unit) * gradients, rows),
             h=np.concatenate([-square[rows] / at.unit, room]),
-            A=None
-            if mesh.A is None
-            else sparse.hstack([mesh.A, sparse.csc_matrix((mesh.A.shape[0], 1))], format="csc"),
+            A=None if mesh.A is None else sparse.hstack([mesh.A, _column(mesh.A)], format="csc"),
             b=None if mesh.A is None else np.zeros(mesh.A.shape[0]),
             lower=np.append(np.minimum(np.maximum(-trust, limits.low - at.c), 0.0), aim.floor / at.unit),
             upper=np.append(np.maximum(np.minimum(trust, limits.high - at.c), 0.0), FAR + aim.floor / at.unit),
@@ -154,11 +157,27 @@ def _column(rows: Matrix) -> Matrix:
     return sparse.csc_matrix((rows.shape[0], 1))
 
 
-def _gradients(mesh: Mesh, e: Array, J: Array) -> Matrix:
-    """(k, n): J^T e of each sample by the unknowns."""
-    k, m = len(e), len(mesh.columns)
+def _gradients(mesh: Mesh, e: Array, J: Array) -> Array:
+    """(k, WIDTH, m): J^T e of each sample by the unknowns that it depends on."""
     push = np.einsum("kr,krp->kp", e, J[:, :, mesh.columns])
-    data = mesh.spline.values[:, :, None] * push[:, None, :]  # (k, WIDTH, m)
-    column = (mesh.spline.first[:, None] + np.arange(WIDTH))[:, :, None] * m + np.arange(m)
-    row = np.repeat(np.arange(k), WIDTH * m)
-    return sparse.csr_matrix((data.ravel(), (row, column.ravel())), shape=(k, mesh.unknowns))
+    return np.asarray(mesh.spline.values[:, :, None] * push[:, None, :])
+
+
+def _rows(mesh: Mesh, gradients: Array, rows: Integers) -> Matrix:
+    """(r + limits, n + 1): gradients (k, WIDTH, m) of the samples `rows` with -1 at tau, then the limits."""
+    r, m, n = len(rows), len(mesh.columns), mesh.unknowns
+    width = WIDTH * m
+    limits = mesh.limits.G
+    column = (mesh.spline.first[rows] * m)[:, None] + np.arange(width + 1)
+    column[:, -1] = n
+    data = np.column_stack([gradients[rows].reshape(r, width), np.full(r, -1.0)])
+    start = np.arange(r + 1) * (width + 1)
+    stacked: Matrix = sparse.csr_matrix(
+        (
+            np.concatenate([data.ravel(), limits.data]),
+            np.concatenate([column.ravel(), limits.indices]),
+            np.concatenate([start, limits.indptr[1:] + start[-1]]),
+        ),
+        shape=(r + limits.shape[0], n + 1),
+    )
+    return stacked.tocsc()

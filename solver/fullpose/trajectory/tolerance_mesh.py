@@ -1,6 +1,7 @@
 """A stretch of a flight as the least tolerance sees it: samples, splines of all frames, limits, and what is fixed."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -13,7 +14,9 @@ from fullpose.trajectory.frame_spline import (
     ENDS,
     FrameSpline,
     LimitRows,
+    difference_matrix,
     end_rows,
+    finite_limits,
     frame_spline,
     free_columns,
     limit_rows,
@@ -73,14 +76,46 @@ class Mesh:
         attitude_model(self.rig.axes, self.attitude, path, e, J)
         return e, J
 
-    def normal_matrix(self, J: Array, weight: Array) -> Matrix:
-        """Sum of weight (k,) J^T J over the samples, J (k, 3, 4), of the unknowns."""
-        n, width = self.unknowns, min(WIDTH * len(self.columns), self.unknowns)
-        bands = np.zeros((n, WIDTH * len(self.columns)))
+    def normal_bands(self, J: Array, weight: Array) -> Array:
+        """Sum of weight (k,) J^T J over the samples, J (k, 3, 4), of the unknowns: upper bands (n, WIDTH m)."""
+        bands = np.zeros((self.unknowns, WIDTH * len(self.columns)))
         normal_bands(self.spline.first, self.spline.values, J, weight, self.columns, bands)
-        diagonals = [bands[: n - b, b] for b in range(width)]
-        upper: Matrix = sparse.diags(diagonals, list(range(width)), shape=(n, n), format="csr")
-        return upper + sparse.triu(upper, 1).T
+        return bands
+
+    @cached_property
+    def smoothness(self) -> Array:
+        """The mean acceleration squared as a share of its limit, a quadratic form: upper bands (n, WIDTH m)."""
+        m, n = len(self.columns), self.unknowns
+        acceleration = finite_limits(self.rig)[1][self.columns]
+        bend = difference_matrix(self.spline.size, 2)
+        D = sparse.kron(bend, sparse.diags(1.0 / (acceleration * self.spline.spacing**2)))
+        form = ((D.T @ D) / self.spline.size).todia()
+        bands = np.zeros((n, WIDTH * m))
+        for offset, diagonal in zip(form.offsets, form.data, strict=True):
+            if offset >= 0:
+                bands[: n - offset, offset] = diagonal[offset:n]
+        return bands
+
+    @cached_property
+    def pattern(self) -> tuple[Integers, Integers, Integers, Integers]:
+        """Where bands go in compressed columns of an upper triangle: (row, band) of each entry, indices, indptr."""
+        n, width = self.unknowns, WIDTH * len(self.columns)
+        column = np.arange(n)[:, None]
+        rows = column + np.arange(1 - width, 1)  # (n, width) of each column, downward
+        kept = rows >= 0
+        row = rows[kept]
+        band = np.broadcast_to(np.arange(width - 1, -1, -1), rows.shape)[kept]
+        return row, band, row.astype(np.int32), np.append(0, np.cumsum(kept.sum(axis=1))).astype(np.int32)
+
+    def upper(self, bands: Array, last: float | None = None) -> Matrix:
+        """The upper triangle of bands (n, WIDTH m), one more unknown after it with `last` on its diagonal."""
+        row, band, indices, indptr = self.pattern
+        data, n = bands[row, band], self.unknowns
+        if last is not None:
+            data, n = np.append(data, last), n + 1
+            indices = np.append(indices, np.int32(n - 1))
+            indptr = np.append(indptr, np.int32(indptr[-1] + 1))
+        return sparse.csc_matrix((data, indices, indptr), shape=(n, n))
 
     def keeps_limits(self, c: Array) -> bool:
         """Whether unknowns (n,) are inside the limits, and meet what is fixed."""
@@ -127,12 +162,13 @@ def inside_limits(problem: Problem, mesh: Mesh, path: Array) -> Array | None:
     _, J = mesh.model_of(path)
     B = sparse.kron(mesh.spline.matrix, sparse.identity(m), format="csr")
     near = NEAR / k
-    P = mesh.normal_matrix(J, np.full(k, 2.0 / k)) + near * (B.T @ B) + DAMPING * sparse.identity(mesh.unknowns)
+    P = mesh.upper(mesh.normal_bands(J, np.full(k, 2.0 / k)))
+    P = sparse.csc_matrix(P + sparse.triu(near * (B.T @ B)) + DAMPING * sparse.identity(mesh.unknowns))
     target, J = path[:, mesh.columns], J[:, :, mesh.columns]
     push = np.einsum("krp,krq,kq->kp", J, J, target) * (2.0 / k) + near * target
     limits = mesh.limits
     answer = problem.solver(
-        Matrices(P.tocsc(), -(B.T @ push.ravel()), limits.G.tocsc(), limits.h, mesh.A, mesh.b, limits.low, limits.high)
+        Matrices(P, -(B.T @ push.ravel()), limits.G.tocsc(), limits.h, mesh.A, mesh.b, limits.low, limits.high)
     )
     if answer.status is Status.FAILED:
         return None
