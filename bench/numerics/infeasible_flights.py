@@ -1,4 +1,4 @@
-"""Flights of 2 to 3 s at 100 Hz that a rig cannot fly, by what keeps it from them; most by construction from frame paths."""
+"""Flights of 2 to 2.5 s at 100 Hz that a rig cannot fly, by what keeps it from them; most are made of frame paths."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -90,10 +90,8 @@ def _rolls() -> Iterator[Case]:
     for seed, rate in enumerate((250.0, 320.0, 400.0, 400.0)):
         rig = limited if seed < 3 else replace(limited, geometry=Geometry.HORIZONTAL_4)
         pitch = (5.0 + 12.0 * seed) * DEG * np.sin(2.0 * time + seed)
-        yield Case(
-            f"roll {rate:g} {seed}", "fast roll", time, dcm_from_euler(20 * DEG * np.sin(time), pitch, rate * DEG * time),
-            rig,
-        )  # fmt: skip
+        attitude = dcm_from_euler(20 * DEG * np.sin(time), pitch, rate * DEG * time)
+        yield Case(f"roll {rate:g} {seed}", "fast roll", time, attitude, rig)
 
 
 def _starts() -> Iterator[Case]:
