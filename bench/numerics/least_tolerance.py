@@ -1,6 +1,6 @@
 """The least tolerance against a slow reference of another kind: python -m bench.numerics.least_tolerance [options]
 
-    python -m bench.numerics.least_tolerance --restarts 12 --json least_tolerance.json
+    python -m bench.numerics.least_tolerance --restarts 40 --json least_tolerance.json
 
 60 flights of 2 to 2.5 s that cannot be flown, for eight causes (`bench.numerics.infeasible_flights`); the reference is
 shooting from random starts (`bench.numerics.shooting`). Times are the processor's, [s]: of the plan that refuses the
@@ -86,7 +86,7 @@ def printed(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
 def main() -> None:
     """Run, print, write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--restarts", type=int, default=12)
+    parser.add_argument("--restarts", type=int, default=40)
     parser.add_argument("--cause")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--reference", type=Path)
@@ -101,7 +101,7 @@ def main() -> None:
     better = sum(row["ours_deg"] < row["reference_deg"] / WITHIN for row in told)
     times = np.array([(row["plan_s"], row["ours_s"], row["reference_s"]) for row in told])
     print(
-        f"{len(told)} infeasible flights: within 5 % of the reference {inside}, more than 5 % below it {better}; limits "
+        f"{len(told)} infeasible flights: within 5 % of the reference {inside}, more than 5 % below {better}; limits "
         f"exceeded on {sum(row['violations'] > 0 for row in told)}. Median s: plan {np.median(times[:, 0]):.2f}, ours "
         f"{np.median(times[:, 1]):.2f}, reference {np.median(times[:, 2]):.2f}. {machine()}"
     )

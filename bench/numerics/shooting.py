@@ -2,8 +2,8 @@
 
 Unknowns are each frame's first angle, first rate and its acceleration at every sample, in the box of the acceleration
 limit; the samples follow by their own differences. What is minimised is a power mean of 1 - cos(error), the power
-raised step by step, with squared penalties on ranges and rates raised too, by L-BFGS-B (SciPy; Byrd, Lu, Nocedal and
-Zhu 1995). Nothing is shared with the planner: no spline, no quadratic programme, no linearised attitude, own kinematics. It may
+raised step by step, with squared penalties on ranges and rates raised too, by L-BFGS-B (SciPy; Byrd, Lu, Nocedal
+and Zhu 1995). Nothing is shared with the planner: no spline, no quadratic programme, no linearised attitude, own kinematics. It may
 exceed a range or rate by `BEYOND`, so it has a hair more than the rig.
 """
 
@@ -21,10 +21,10 @@ from fullpose.charts import base_chart, inner_chart
 from fullpose.rig import Rig
 from fullpose.verify import attitude_errors, payload_attitudes
 
-POWERS = (1.0, 3.0, 8.0, 20.0, 50.0)
-PENALTIES = (3.0, 10.0, 30.0, 100.0, 300.0)
-ITERATIONS = (60, 60, 80, 120, 250)
-PROMISING = 8  # of the starts that go beyond the second power
+POWERS = (1.0, 3.0, 8.0, 20.0, 50.0, 150.0)
+PENALTIES = (3.0, 10.0, 30.0, 100.0, 300.0, 300.0)
+ITERATIONS = (60, 60, 100, 150, 300, 800)
+ROUNDS = ((2, 6), (4, 3), (6, 0))  # stages until, and how many of the starts go on from there
 BEYOND = 2e-3  # of a rate limit, or [rad], that counts as kept
 FREE = 1e3  # in place of a limit that is none
 
@@ -145,21 +145,20 @@ class Reference:
 def reference(case: Case, restarts: int, seed: int = 0) -> Reference:
     """The least tolerance by shooting from random starts."""
     random = np.random.default_rng(seed)
-    pool = []
-    for number in range(restarts):
-        y = pursuit(case, start_path(case, random, number))
-        for stage in (0, 1):
-            y, cost, _ = descended(case, y, stage)
-        pool.append((cost, number, y))
-    pool.sort(key=lambda each: each[:2])
-    best, kept = math.inf, 0
-    for _, _, y in pool[:PROMISING]:
-        gaps = np.zeros(2)
-        for stage in range(2, len(POWERS)):
-            y, _, gaps = descended(case, y, stage)
-        if gaps.max() <= BEYOND:
-            kept += 1
-            best = min(best, largest_error(case, y))
+    pool = [(0.0, number, pursuit(case, start_path(case, random, number))) for number in range(restarts)]
+    best, kept, begin = math.inf, 0, 0
+    for end, going_on in ROUNDS:
+        carried = []
+        for _, number, unknowns in pool:
+            y, cost, gaps = unknowns, 0.0, np.zeros(2)
+            for stage in range(begin, end):
+                y, cost, gaps = descended(case, y, stage)
+            carried.append((cost, number, y))
+            if end == len(POWERS) and gaps.max() <= BEYOND:
+                kept += 1
+                best = min(best, largest_error(case, y))
+        pool = sorted(carried, key=lambda each: each[:2])[:going_on]
+        begin = end
     return Reference(best, kept)
 
 
