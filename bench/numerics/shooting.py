@@ -3,8 +3,8 @@
 Unknowns are each frame's first angle, first rate and its acceleration at every sample, in the box of the acceleration
 limit; the samples follow by their own differences. What is minimised is a power mean of 1 - cos(error), the power
 raised step by step, with squared penalties on ranges and rates raised too, by L-BFGS-B (SciPy; Byrd, Lu, Nocedal
-and Zhu 1995). Nothing is shared with the planner: no spline, no quadratic programme, no linearised attitude, own kinematics. It may
-exceed a range or rate by `BEYOND`, so it has a hair more than the rig.
+and Zhu 1995). Nothing is shared with the planner: no spline, no quadratic programme, no linearised attitude, own
+kinematics. It may exceed a range or rate by `BEYOND`, so it has a hair more than the rig.
 """
 
 import math
