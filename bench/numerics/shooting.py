@@ -225,8 +225,9 @@ def start_path(case: Case, random: np.random.Generator, number: int) -> Array:
             chart(rig.geometry.horizontal, case.attitude[k], angle[k], branch, path[k])
         path = np.unwrap(path, axis=0)
     path[:, rig.axes < 0] = 0.0
-    middle = np.where(np.isfinite(rig.position_min), 0.5 * (rig.position_min + rig.position_max), 0.0)
-    middle[~np.isfinite(middle)] = 0.0
+    finite = np.isfinite(rig.position_min)
+    middle = np.zeros(4)
+    middle[finite] = 0.5 * (rig.position_min[finite] + rig.position_max[finite])
     return np.asarray(path - 2.0 * np.pi * np.rint((path.mean(axis=0) - middle) / (2.0 * np.pi)))
 
 
