@@ -135,7 +135,10 @@ class Engine:
         self._next += 1
         box = Box(f"{self._prefix}-{self._next}", f"{self._net}.{self._next}", tokens)
         self._boxes.append(box.name)
-        network = ("--network", self._prefix, "--ip", box.address)
+        # The hardware's address follows from it, as with docker: who has it in mind would ask the one before for half a
+        # minute, where a container that is started anew had another.
+        hardware = ":".join(f"{byte:02x}" for byte in (0x02, 0x42, *map(int, box.address.split("."))))
+        network = ("--network", self._prefix, "--ip", box.address, "--mac-address", hardware)
         podman("run", "--detach", "--name", box.name, *network, *options, image, *command)
         return box
 
