@@ -107,10 +107,12 @@ class Client:
         method: str = "plan",
         options: dict[str, Any] | None = None,
         start_deg: list[float] | None = None,
+        tolerance_deg: float | None = None,
     ) -> dict[str, Any]:
         """Ask for a plan and wait until its job has ended; look at `status` and `flyable`."""
-        body = {"trajectory": trajectory, "rig": rig, "method": method, "options": options or {}}
-        made = await self._object("POST", "/plans", json=body | {"start_deg": start_deg})
+        body: dict[str, Any] = {"trajectory": trajectory, "rig": rig, "method": method, "options": options or {}}
+        body |= {"start_deg": start_deg, "tolerance_deg": tolerance_deg}
+        made = await self._object("POST", "/plans", json=body)
         while made["status"] in ("queued", "running"):
             await asyncio.sleep(POLL_S)
             made = await self._object("GET", f"/plans/{made['id']}")

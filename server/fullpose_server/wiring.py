@@ -273,6 +273,7 @@ class _PlanRequests:
             method=row.method,
             options=row.options,
             start=None if start is None else (float(start[0]), float(start[1]), float(start[2]), float(start[3])),
+            tolerance_deg=row.tolerance_deg,
             remedy=row.remedy,
         )
 

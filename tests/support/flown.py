@@ -19,7 +19,7 @@ from fullpose_server.store.alarms import AlarmHistory, RaisedAlarm
 from fullpose_server.store.audit import AuditLog
 from fullpose_server.store.audit_entry import AuditEntry
 from fullpose_server.store.database import Database
-from fullpose_server.store.plans import PlanStore
+from fullpose_server.store.plans import PlanAsked, PlanStore
 from fullpose_server.store.trajectories import TrajectoryStore
 from tests.fullpose_server.runtime.rigs import plan_of
 from tests.support.stores import Stores
@@ -64,13 +64,15 @@ def flown(folder: Path, seconds: float = 1.0, rig: Rig = BENCH) -> Flown:
         source.write_text(FLIGHT)
         sha256 = stores.keep(read_trajectory(source, Convention.NUE), source, "a flight")[0].sha256
         row = stores.plans.add(
-            trajectory=sha256,
-            rig=rig.name,
-            rig_hash=rig_hash(rig),
-            method="plan",
-            options={},
-            start_deg=None,
-            rate_hz=RATE_HZ,
+            PlanAsked(
+                trajectory=sha256,
+                rig=rig.name,
+                rig_hash=rig_hash(rig),
+                method="plan",
+                options={},
+                start_deg=None,
+                rate_hz=RATE_HZ,
+            )
         )
         made = plan_of(rig, seconds, RATE_HZ, swing=0.2, plan_id=row.id)
         plan = sealed_plan(replace(made, info=replace(made.info, trajectory_sha256=sha256)))

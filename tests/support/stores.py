@@ -12,7 +12,7 @@ from fullpose_server.formats.trajectory import Convention, Trajectory
 from fullpose_server.formats.trajectory_file import read_trajectory
 from fullpose_server.planning.plan_request import PlanRequest
 from fullpose_server.store.database import Database
-from fullpose_server.store.plans import PlanStore
+from fullpose_server.store.plans import PlanAsked, PlanStore
 from fullpose_server.store.tables import TrajectoryRow
 from fullpose_server.store.trajectories import TrajectoryStore
 
@@ -42,15 +42,20 @@ class Stores:
     def arrays(self, sha256: str) -> tuple[Array, Array]:
         return read_arrays(self.trajectories.folder(sha256), self.trajectories.get(sha256).samples)
 
-    def add_plan(self, trajectory: str, method: str = "exact", rate_hz: float = 200.0) -> str:
+    def add_plan(
+        self, trajectory: str, method: str = "exact", rate_hz: float = 200.0, tolerance_deg: float | None = None
+    ) -> str:
         row = self.plans.add(
-            trajectory=trajectory,
-            rig=RIG.name,
-            rig_hash=rig_hash(RIG),
-            method=method,
-            options={},
-            start_deg=None,
-            rate_hz=rate_hz,
+            PlanAsked(
+                trajectory=trajectory,
+                rig=RIG.name,
+                rig_hash=rig_hash(RIG),
+                method=method,
+                options={},
+                start_deg=None,
+                rate_hz=rate_hz,
+                tolerance_deg=tolerance_deg,
+            )
         )
         return row.id
 
@@ -67,4 +72,5 @@ class Stores:
             method=row.method,
             options={},
             start=None,
+            tolerance_deg=row.tolerance_deg,
         )

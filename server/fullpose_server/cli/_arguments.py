@@ -25,6 +25,14 @@ ConventionName = Annotated[
     str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
 ]
 
+ToleranceDeg = Annotated[
+    float | None,
+    typer.Option(
+        metavar="DEG",
+        help="The attitude may differ from the input by at most that [deg]: noise, rounding, holds and jitter go.",
+    ),
+]
+
 Config = Annotated[
     Path | None, typer.Option(help="Settings, as TOML: port = 8642; by default the file FULLPOSE_CONFIG names.")
 ]

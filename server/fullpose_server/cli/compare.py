@@ -1,12 +1,13 @@
 """`fullpose compare`: methods side by side on one flight and rig."""
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose
+from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, ToleranceDeg, command
 from fullpose_server.cli._exit import DONE
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import check_outputs
@@ -18,23 +19,29 @@ COLUMNS = ("method", "exact", "largest error", "beyond limits", "limited", "peak
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
-    app.command("compare", help="Put methods side by side on one flight and rig.")(compare)
+    app.command("compare", help="Put methods side by side on one flight and rig.")(command(CompareArguments, compare))
 
 
-def compare(
-    flight: FlightFile,
-    rig: RigName,
+@dataclass(frozen=True)
+class CompareArguments:
+    """What `fullpose compare` is told."""
+
+    flight: FlightFile
+    rig: RigName
     methods: Annotated[
         str, typer.Option(help=f"With commas between, options after colons (alm:mode=open_loop), of {METHODS}.")
-    ] = METHODS.replace(" ", ""),
-    report: Annotated[Path | None, typer.Option(help="Write the figures as JSON.")] = None,
-    page: Annotated[Path | None, typer.Option(help="Write table and plots as one self-contained HTML page.")] = None,
-    start: StartPose = None,
-    convention: ConventionName = "nue",
+    ] = METHODS.replace(" ", "")
+    report: Annotated[Path | None, typer.Option(help="Write the figures as JSON.")] = None
+    page: Annotated[Path | None, typer.Option(help="Write table and plots as one self-contained HTML page.")] = None
+    start: StartPose = None
+    convention: ConventionName = "nue"
     rate: Annotated[
         float | None, typer.Option(help="Bring the flight to this rate [Hz] first; without it its samples are solved.")
-    ] = None,
-) -> None:
+    ] = None
+    tolerance: ToleranceDeg = None
+
+
+def compare(given: CompareArguments) -> None:
     """Solve with each method, print the figures, write what was asked for.
 
     Exit 2: bad input, or no method applies to the rig; nothing written.
@@ -42,12 +49,13 @@ def compare(
     from fullpose.compare import variants
     from fullpose_server.formats.output_file import write_text
     from fullpose_server.formats.rig_file import find_rig
-    from fullpose_server.planning.make_comparison import make_comparison
+    from fullpose_server.planning.make_comparison import make_comparison, within_tolerance
 
-    asked = variants([text for text in methods.split(",") if text.strip()])
-    chosen = find_rig(rig).rig
-    check_outputs({"--report": report, "--page": page}, flight, rig)
-    read = read_flight(flight, convention, chosen, start)
+    asked = variants([text for text in given.methods.split(",") if text.strip()])
+    chosen = find_rig(given.rig).rig
+    check_outputs({"--report": given.report, "--page": given.page}, given.flight, given.rig)
+    read = read_flight(given.flight, given.convention, chosen, given.start)
+    at, q, told = within_tolerance(read.time, read.q, given.tolerance)
     with progress_bar("compare") as bar:
         order = {one.label: k for k, one in enumerate(asked)}
 
@@ -55,12 +63,13 @@ def compare(
             if bar is not None:
                 bar(order[label] * total + done, len(order) * total)
 
-        made = make_comparison(flight.name, read.time, read.q, chosen, asked, read.start, rate, progress)
-    if report is not None:
-        write_text(report, json.dumps(made.report, indent=2) + "\n")
-    if page is not None:
-        write_text(page, made.page)
-    typer.echo(_table(made.report))
+        made = make_comparison(given.flight.name, at, q, chosen, asked, read.start, given.rate, progress)
+    report = made.report | told
+    if given.report is not None:
+        write_text(given.report, json.dumps(report, indent=2) + "\n")
+    if given.page is not None:
+        write_text(given.page, made.page)
+    typer.echo(_table(report))
     raise typer.Exit(DONE)
 
 
@@ -94,4 +103,6 @@ def _table(report: dict[str, Any]) -> str:
     heading = f"{report['flight']} on {report['rig']}: {report['samples']} samples over {report['duration_s']:.6g} s"
     if report["resampling"]:
         heading += f" ({report['resampling']})"
+    if "smoothing" in report:
+        heading += f", within {report['tolerance_deg']:g} deg: {report['smoothing']}"
     return "\n".join([heading, *lines, *refusals])

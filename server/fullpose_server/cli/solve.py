@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, command
+from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, ToleranceDeg, command
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail, say
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import check_outputs
 from fullpose_server.cli._progress import progress_bar
+from fullpose_server.cli._tolerance import Within, within
 
 if TYPE_CHECKING:
     from fullpose.plan import Plan
     from fullpose.rig import Rig
     from fullpose.solution import Solution
-    from fullpose_server.cli._flight import Flight
 
 METHODS = (
     "plan, preview, exact, alm, dwln, lagrange, weighted, gradient_projection, fixed_joint, clamped, follow_up, "
@@ -46,6 +46,7 @@ class SolveArguments:
     option: Annotated[
         list[str] | None, typer.Option("--option", "-o", metavar="NAME=VALUE", help="Option of the method.")
     ] = None
+    tolerance: ToleranceDeg = None
 
 
 def solve(asked: SolveArguments) -> None:
@@ -55,14 +56,17 @@ def solve(asked: SolveArguments) -> None:
     from fullpose_server.formats.output_file import write_solution, write_text
     from fullpose_server.formats.report import make_report, verdict_report, why_infeasible, why_not_exact
     from fullpose_server.formats.rig_file import find_rig
+    from fullpose_server.formats.tolerance_report import advice
 
     flight, method = asked.flight, asked.method
     chosen = find_rig(asked.rig).rig
     check_outputs({"--out": asked.out, "--report": asked.report, "--plot": asked.plot}, flight, asked.rig)
     read = read_flight(flight, asked.convention, chosen, asked.start)
     attitude = dcm_from_quaternion(read.q)
-    solution, planned = _solve(read, attitude, chosen, method, asked.option or [])
-    made = make_report(solution, verify(solution.time, solution.angles, chosen, attitude))
+    told = within(read, attitude, asked.tolerance)
+    solution, planned = _solve(told, chosen, method, asked.option or [])
+    made = told.reported(make_report(solution, verify(solution.time, solution.angles, chosen, attitude)))
+    solution = told.measured(solution)
     made["warnings"] = [{"code": c.code, "message": c.message} for c in read.warnings]
     if planned is not None:
         made.update(verdict_report(planned))
@@ -79,11 +83,14 @@ def solve(asked: SolveArguments) -> None:
 
         write_text(asked.plot, plot_page(solution, made, flight.name))
     typer.echo(_summary(made))
-    why = why_infeasible(made)
+    why, advised = why_infeasible(made), advice(made)
     statement = made["verdict"]["statement"] if planned is not None else ""
     if why is not None:
         rests = f". {statement}" if statement else ""
+        rests += f". {advised[0].upper()}{advised[1:]} (--tolerance)" if advised else ""
         fail(f"{flight} is not feasible on {chosen.name} with {method}: {why}{rests}", NOT_FEASIBLE)
+    if "smoothing" in made:
+        say(f"{flight}: {made['smoothing']}")
     if planned is not None:
         say(f"{flight}: {statement}")
         if planned.lead_refusal:
@@ -93,22 +100,21 @@ def solve(asked: SolveArguments) -> None:
     raise typer.Exit(DONE)
 
 
-def _solve(
-    flight: "Flight", attitude: Any, rig: "Rig", method: str, texts: list[str]
-) -> tuple["Solution", "Plan | None"]:
+def _solve(told: Within, rig: "Rig", method: str, texts: list[str]) -> tuple["Solution", "Plan | None"]:
     """The solution; of method plan the whole plan, too, which says what the verdict rests on."""
     from fullpose.registry import method_options, parse_option
     from fullpose.solve import solve_flight
+    from fullpose_server.planning.remaining_tolerance import with_remaining
 
     options = method_options(method, dict(parse_option(text, method) for text in texts))
     with progress_bar(method) as progress:
         solved = solve_flight(
-            flight.time,
-            attitude,
+            told.flight.time,
+            told.attitude,
             rig,
             method=method,
-            options=options,
-            start=flight.start,
+            options=with_remaining(method, options, told.smoothed),
+            start=told.flight.start,
             clock=time.perf_counter,
             progress=progress,
         )

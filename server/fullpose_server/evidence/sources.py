@@ -136,7 +136,13 @@ def _take_plan(found: Sources, folder: Path, session: Session) -> None:
                 found.plan, found.plan_folder = info, plans
     row = session.get(PlanRow, found.run.plan_id)
     if row is not None:
-        found.method = {"method": row.method, "options": row.options, "start_deg": row.start_deg, "remedy": row.remedy}
+        found.method = {
+            "method": row.method,
+            "options": row.options,
+            "start_deg": row.start_deg,
+            "tolerance_deg": row.tolerance_deg,
+            "remedy": row.remedy,
+        }
 
 
 def _take_flight(found: Sources, folder: Path, session: Session) -> None:

@@ -65,13 +65,15 @@ class PlanInfo:
     feasible: bool
     name: str = ""  # of the trajectory, for people
     start_s: float = 0.0  # the flight's own time at its first sample
+    tolerance_deg: float | None = None  # by which the attitude may differ from the flight's
     format: int = 1  # of the folder
     sealed: dict[str, str] = field(default_factory=dict)  # digests of every other key and of the three arrays
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What the seal is of, beside the arrays."""
-        return {key: value for key, value in asdict(self).items() if key not in _SEAL}
+        """What the seal is of, beside the arrays. A plan without a tolerance says nothing of it, as all did once."""
+        said = {key: value for key, value in asdict(self).items() if key not in _SEAL}
+        return said if self.tolerance_deg is not None else {k: v for k, v in said.items() if k != "tolerance_deg"}
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,7 @@ class PlanOrigin:
     method: str
     name: str = ""  # of the trajectory, for people
     start_s: float = 0.0  # the flight's own time at its first sample
+    tolerance_deg: float | None = None
 
 
 class PlanPath(NamedTuple):
@@ -151,6 +154,7 @@ def make_plan(origin: PlanOrigin, rig: Rig, rate_hz: float, path: PlanPath, *, f
         feasible=feasible,
         name=origin.name,
         start_s=float(origin.start_s),
+        tolerance_deg=origin.tolerance_deg,
         format=FORMAT,
     )
     return sealed_plan(PlanFolder(info, x, q, e))
@@ -239,7 +243,8 @@ def _check_seal(path: Path, found: Mapping[str, str], sealed: Mapping[str, str])
 def changed_since(was: PlanInfo, now: PlanInfo) -> list[str]:
     """What of a sealed plan is not what it was: the keys of plan.json, with both values, and the arrays."""
     facts = was.facts, now.facts
-    told = [f"{key} was {facts[0][key]!r}, is {facts[1][key]!r}" for key in facts[0] if facts[0][key] != facts[1][key]]
+    keys = [key for key in {**facts[0], **facts[1]} if facts[0].get(key) != facts[1].get(key)]
+    told = [f"{key} was {facts[0].get(key)!r}, is {facts[1].get(key)!r}" for key in keys]
     return told + [f"{name}.npy is another" for name in unlike(was.sealed, now.sealed) if name in _ARRAYS]
 
 

@@ -125,6 +125,16 @@ def why_infeasible(report: dict[str, Any]) -> str | None:
     if report["feasible"]:
         return None
     blocking, violations = report["blocking"], report["limit_violations"]
+    if (
+        not report.get("within_tolerance", True)
+        and blocking is None
+        and not violations
+        and not report["limited_samples"]
+    ):
+        return (
+            f"it misses the attitude by up to {report['max_error_deg']:.3g} deg, more than the tolerance of "
+            f"{report['tolerance_deg']:g} deg"
+        )
     if blocking is not None:
         limit = f"{blocking['limit']} limit of the {blocking['frame']} frame"
         return f"at {blocking['time_s']:.3f} s the {limit} closes the way"

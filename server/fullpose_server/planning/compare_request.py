@@ -25,6 +25,7 @@ class CompareRequest:
     rate_hz: float
     start: tuple[float, float, float, float] | None  # [rad]
     created: float  # [s] since the epoch
+    tolerance_deg: float | None = None  # by which the attitude may differ from the flight's
 
     def to_json(self) -> str:
         """One JSON document."""

@@ -13,12 +13,14 @@ from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.compare import compare, variants
 from fullpose.errors import MethodError
+from fullpose.recorded import smooth
 from fullpose.registry import Variant
 from fullpose.resample import resample
 from fullpose.rig import Rig
 from fullpose_server.formats.compare_report import comparison_report
 from fullpose_server.formats.flight_folder import read_arrays
 from fullpose_server.formats.output_file import write_text
+from fullpose_server.formats.tolerance_report import tolerance_radians, tolerance_report
 from fullpose_server.pages.compare_page import compare_page
 from fullpose_server.planning.compare_length import check_length, check_samples
 from fullpose_server.planning.compare_request import PAGE, REPORT, read_request
@@ -67,6 +69,17 @@ def make_comparison(
     return Comparison(report, compare_page(report, rows, rig, attitude))
 
 
+def within_tolerance(at: Array, q: Array, tolerance_deg: float | None) -> tuple[Array, Array, dict[str, Any]]:
+    """(time (n,) [s], q (n, 4)) within a tolerance, and what the report says of it; as they are for None.
+
+    The methods' errors are to what they were given. Raises `InputError` for a tolerance that is none.
+    """
+    if tolerance_deg is None:
+        return at, q, {}
+    smoothed = smooth(at, dcm_from_quaternion(q), tolerance_radians(tolerance_deg))
+    return np.array(smoothed.time), np.array(smoothed.q), tolerance_report(smoothed, tolerance_deg)
+
+
 def make_comparison_folder(values: Mapping[str, str], report_progress: Progress) -> dict[str, str]:
     """Make the comparison that a job's folder asks for, and put report and page there.
 
@@ -81,9 +94,8 @@ def make_comparison_folder(values: Mapping[str, str], report_progress: Progress)
         report_progress(label, order[label] * total + done, len(order) * total)
 
     start = None if request.start is None else np.array(request.start)
-    made = make_comparison(
-        request.name, np.array(at), np.array(q), request.rig, request.methods, start, request.rate_hz, progress
-    )
+    at, q, told = within_tolerance(np.array(at), np.array(q), request.tolerance_deg)
+    made = make_comparison(request.name, at, q, request.rig, request.methods, start, request.rate_hz, progress)
     write_text(folder / PAGE, made.page)
-    write_text(folder / REPORT, json.dumps(made.report))
+    write_text(folder / REPORT, json.dumps(made.report | told))
     return {}

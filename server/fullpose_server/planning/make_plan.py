@@ -10,10 +10,12 @@ import numpy as np
 
 from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_dcm
+from fullpose.compare import EXACT_WITHIN
 from fullpose.errors import MethodError
 from fullpose.lead import lead_in, lead_out
 from fullpose.plan import Plan
 from fullpose.plan.verdict import margins
+from fullpose.recorded import Smoothed, smooth
 from fullpose.registry import method_options
 from fullpose.resample import Resampled, continuous, resample
 from fullpose.rig import Rig
@@ -23,12 +25,15 @@ from fullpose.verify import verify
 from fullpose_server.formats.flight_folder import read_arrays
 from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan, rig_hash, write_plan
 from fullpose_server.formats.report import exceeds, make_report, margins_report, verdict_report, why_infeasible
+from fullpose_server.formats.tolerance_report import judged, tolerance_radians, tolerance_report, without_tolerance
 from fullpose_server.planning.plan_request import PlanRequest
+from fullpose_server.planning.remaining_tolerance import with_remaining
 from fullpose_server.planning.remedy import find_remedy
 from fullpose_server.planning.remedy_request import RemedyRequest
 
 Progress = Callable[[str, int, int], None]  # phase, done, total
 _NONE = np.empty((0, 4))
+EXACT_DEG = math.degrees(EXACT_WITHIN)
 
 
 def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, Any]:
@@ -40,11 +45,11 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     """
     request = PlanRequest.from_json(values)
     progress("resample", 0, 1)
-    time_s, q = read_arrays(request.trajectory)
-    flight = resample(np.array(time_s), np.array(q), request.rate_hz)
+    given = _given(request)
+    flight = resample(given.time, given.q, request.rate_hz)
     if flight.time.size < 2:
         flight = _held(flight, request.rate_hz)
-    made = _solve(request, flight.time - flight.time[0], flight.q, progress)
+    made = _solve(request, given.smoothed, flight, progress)
     solution = made.solution
     at, rig = solution.time, solution.rig
     progress("verify", 0, 1)
@@ -52,6 +57,7 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     report["rig"] = request.rig.name
     if made.planned is not None:
         report |= verdict_report(made.planned)
+    report = given.reported(report)
     refusal = why_infeasible(report)
     before, after = _NONE, _NONE
     if refusal is None:
@@ -70,6 +76,36 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     result = _write(request, flight, made, report, refusal, angles, (len(before), len(after)))
     shown = margins_report(margins(at, solution.angles, rig), rig)
     return result | {"verdict": made.verdict, "margins": shown, "remedy": remedy}
+
+
+@dataclass(frozen=True)
+class _Given:
+    """A stored flight as it is to be brought to the rig's rate: as it was given, or within a tolerance."""
+
+    time: Array  # (n,) [s]
+    q: Array  # (n, 4)
+    tolerance_deg: float | None
+    smoothed: Smoothed | None
+
+    def reported(self, report: dict[str, Any]) -> dict[str, Any]:
+        """The report with what it says of a tolerance; with one, the error is to the flight as it was given."""
+        if self.smoothed is None or self.tolerance_deg is None:
+            return report | without_tolerance(self.time, self.q, dcm_from_quaternion(self.q), report)
+        told = report | tolerance_report(self.smoothed, self.tolerance_deg)
+        # Of what is flown from what was given: the deviation of the flight, and the method's own error on top.
+        return judged(told | {"max_error_deg": _sum(told["max_error_deg"], told["deviation_deg"]["max"])})
+
+
+def _sum(error_deg: float | None, deviation_deg: float) -> float | None:
+    return None if error_deg is None else deviation_deg if error_deg < EXACT_DEG else error_deg + deviation_deg
+
+
+def _given(request: PlanRequest) -> _Given:
+    time_s, q = (np.array(column) for column in read_arrays(request.trajectory))
+    if request.tolerance_deg is None:
+        return _Given(time_s, q, None, None)
+    smoothed = smooth(time_s, dcm_from_quaternion(q), tolerance_radians(request.tolerance_deg))
+    return _Given(np.array(smoothed.time), np.array(smoothed.q), request.tolerance_deg, smoothed)
 
 
 def _held(moment: Resampled, rate_hz: float) -> Resampled:
@@ -98,9 +134,10 @@ class _Made:
     remedy: dict[str, Any] = field(default_factory=dict)
 
 
-def _solve(request: PlanRequest, at: Array, q: Array, progress: Progress) -> _Made:
+def _solve(request: PlanRequest, smoothed: Smoothed | None, flight: Resampled, progress: Progress) -> _Made:
+    at, q = flight.time - flight.time[0], flight.q
     attitude = dcm_from_quaternion(q)
-    options = method_options(request.method, request.options)
+    options = with_remaining(request.method, method_options(request.method, request.options), smoothed)
     start = None if request.start is None else np.array(request.start)
 
     def tell(done: int, total: int) -> None:
@@ -167,7 +204,12 @@ def _write(
     target, error = np.full((n, 4), math.nan), np.full(n, math.nan)
     target[inner], error[inner] = made.q, solution.error
     origin = PlanOrigin(
-        request.plan_id, request.trajectory_sha256, request.method, request.name, start_s=float(flight.time[0])
+        request.plan_id,
+        request.trajectory_sha256,
+        request.method,
+        request.name,
+        start_s=float(flight.time[0]),
+        tolerance_deg=request.tolerance_deg,
     )
     path = PlanPath(angles, target, error, *leads)
     folder = make_plan(origin, solution.rig, request.rate_hz, path, feasible=refusal is None)

@@ -23,6 +23,7 @@ class PlanRequest:
     method: str
     options: dict[str, Any]
     start: tuple[float, float, float, float] | None  # [rad]
+    tolerance_deg: float | None = None  # by which the attitude may differ from the flight's
     remedy: dict[str, Any] | None = None  # kind, frame, limit: the flight is to be changed until it fits
 
     def to_json(self) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import shutil
 import time
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, cast
 from uuid import uuid4
@@ -18,6 +19,21 @@ from fullpose_server.store.tables import PlanRow, TrajectoryRow
 SEARCHED = (PlanRow.search, TrajectoryRow.search)
 
 
+@dataclass(frozen=True)
+class PlanAsked:
+    """What a plan is asked for; `remedy` (of, kind, frame, limit) makes it a remedy of another."""
+
+    trajectory: str
+    rig: str
+    rig_hash: str
+    method: str
+    options: dict[str, Any]
+    start_deg: list[float] | None
+    rate_hz: float
+    tolerance_deg: float | None = None  # by which the attitude may differ from the flight's
+    remedy: dict[str, Any] | None = None
+
+
 class PlanStore:
     """Adds, lists, removes plans and moves their status; who runs them is `PlanQueue`."""
 
@@ -26,35 +42,14 @@ class PlanStore:
         self.root = root
         root.mkdir(parents=True, exist_ok=True)
 
-    def add(
-        self,
-        *,
-        trajectory: str,
-        rig: str,
-        rig_hash: str,
-        method: str,
-        options: dict[str, Any],
-        start_deg: list[float] | None,
-        rate_hz: float,
-        remedy: dict[str, Any] | None = None,
-    ) -> PlanRow:
-        """A new plan, queued; `remedy` (of, kind, frame, limit) makes it a remedy of another.
-
-        Raises `NotFoundError` for an unknown trajectory.
-        """
+    def add(self, asked: PlanAsked) -> PlanRow:
+        """A new plan, queued. Raises `NotFoundError` for an unknown trajectory."""
         with self._database.begin() as session:
-            if session.get(TrajectoryRow, trajectory) is None:
-                raise NotFoundError("trajectory", trajectory)
+            if session.get(TrajectoryRow, asked.trajectory) is None:
+                raise NotFoundError("trajectory", asked.trajectory)
             row = PlanRow(
                 id=uuid4().hex[:16],
-                trajectory=trajectory,
-                rig=rig,
-                rig_hash=rig_hash,
-                method=method,
-                options=options,
-                start_deg=start_deg,
-                remedy=remedy,
-                rate_hz=rate_hz,
+                **{each.name: getattr(asked, each.name) for each in fields(asked)},
                 status=JobStatus.QUEUED,
                 error=None,
                 result=None,
@@ -63,7 +58,7 @@ class PlanStore:
                 finished=None,
                 tags=[],
                 notes="",
-                search=search_text(NO_LABELS, rig, method),
+                search=search_text(NO_LABELS, asked.rig, asked.method),
             )
             session.add(row)
         return row

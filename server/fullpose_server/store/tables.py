@@ -81,6 +81,7 @@ class PlanRow(Table):
     method: Mapped[str] = mapped_column(text_of(64))
     options: Mapped[dict[str, Any]]
     start_deg: Mapped[list[Any] | None]
+    tolerance_deg: Mapped[float | None] = mapped_column(Float)  # by which the attitude may differ from the flight's
     remedy: Mapped[dict[str, Any] | None]  # of (a plan), kind, frame, limit: what is asked for
     rate_hz: Mapped[float] = mapped_column(Float)
     status: Mapped[str] = mapped_column(text_of(16))

@@ -2,6 +2,7 @@
 section 13)."""
 
 from fullpose.recorded.diagnosis import Diagnosis, diagnose
+from fullpose.recorded.effect import Effect, effect_of
 from fullpose.recorded.tube import Smoothed, smooth
 
-__all__ = ["Diagnosis", "Smoothed", "diagnose", "smooth"]
+__all__ = ["Diagnosis", "Effect", "Smoothed", "diagnose", "effect_of", "smooth"]

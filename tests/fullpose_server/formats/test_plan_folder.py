@@ -60,6 +60,8 @@ def edit(folder: Path, **changes: Any) -> None:
 def other(value: Any) -> Any:
     """A value of the same kind that a plan could have."""
     match value:
+        case None:
+            return 0.5
         case bool():
             return not value
         case int() | float():
@@ -84,7 +86,7 @@ def test_a_plan_with_any_key_changed_cannot_be_flown_and_is_told_by_file_and_key
 @pytest.mark.parametrize("key", KEYS)
 def test_a_plan_without_any_one_of_its_keys_cannot_be_flown(tmp_path: Path, key: str) -> None:
     plan = plan_of(RIG, 0.5)
-    named = dataclasses.replace(plan.info, name="loop", start_s=2.0)
+    named = dataclasses.replace(plan.info, name="loop", start_s=2.0, tolerance_deg=0.05)
     write_plan(tmp_path / "plan", sealed_plan(dataclasses.replace(plan, info=named)))
     path = tmp_path / "plan" / "plan.json"
     edited = json.loads(path.read_text())
@@ -176,3 +178,16 @@ def test_the_rig_s_hash_covers_all_of_a_rig_but_its_name() -> None:
             changed.add(rig_hash(dataclasses.replace(rig, frames=(*rig.frames[:k], frame, *rig.frames[k + 1 :]))))
     assert rig_hash(RIG) not in changed
     assert len(changed) == 2 + 4 * len(dataclasses.fields(FrameLimits))
+
+
+def test_a_plan_without_a_tolerance_is_sealed_as_it_was_before_there_were_any(tmp_path: Path) -> None:
+    write_plan(tmp_path / "plan", plan_of(RIG, 0.5))
+    path = tmp_path / "plan" / "plan.json"
+    made = json.loads(path.read_text())
+    assert "tolerance_deg" not in made["sealed"]
+    del made["tolerance_deg"]
+    path.write_text(json.dumps(made))
+    assert read_sealed_plan(tmp_path / "plan").info.tolerance_deg is None
+    path.write_text(json.dumps(made | {"tolerance_deg": 0.5}))
+    with pytest.raises(PlanFolderError, match="tolerance_deg: not as the plan was made"):
+        read_sealed_plan(tmp_path / "plan")

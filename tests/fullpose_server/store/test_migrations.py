@@ -74,6 +74,7 @@ ROWS: dict[str, list[dict[str, Any]]] = {
             "method": "plan",
             "options": json.dumps({"stage": 1}),
             "start_deg": json.dumps([0.0, 1.0, 2.0, 3.0]),
+            "tolerance_deg": 0.25,
             "remedy": json.dumps({"of": "p0", "kind": "rate", "frame": None, "limit": None}),
             "rate_hz": 1000.0,
             "status": status,
@@ -227,6 +228,7 @@ def test_all_rows_of_a_revision_are_read_by_today_s_code(filled: tuple[Location,
     assert (newer.id, newer.status, older.id, older.status, name) == ("p2", "interrupted", "p1", "done", "Überflug")
     assert (older.options, older.start_deg, older.result) == ({"stage": 1}, [0.0, 1.0, 2.0, 3.0], {"feasible": True})
     assert (older.remedy is not None) == (revision >= "0002")
+    assert older.tolerance_deg == (0.25 if revision >= "0008" else None)
     _read_audit(database, location)
     _read_alarms(AlarmHistory(database), there=revision >= "0004")
     _read_people(PeopleStore(database), there=revision >= "0005")

@@ -837,6 +837,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/trajectories/{sha256}/tolerance": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Tolerance Of Trajectory
+         * @description What a tolerance does to the flight: deviation and body accelerations. Without one, the one that is suggested.
+         */
+        get: operations["tolerance_of_trajectory_api_v1_trajectories__sha256__tolerance_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/users": {
         parameters: {
             query?: never;
@@ -1149,6 +1169,16 @@ export interface components {
             time_s: number;
         };
         /**
+         * BodyPeaks
+         * @description The body's largest rate and acceleration, by differences of the samples.
+         */
+        BodyPeaks: {
+            /** Acceleration Deg S2 */
+            acceleration_deg_s2: number;
+            /** Rate Deg S */
+            rate_deg_s: number;
+        };
+        /**
          * CommandDone
          * @description A command that was accepted, and what it gave.
          */
@@ -1215,6 +1245,11 @@ export interface components {
                 number,
                 number
             ] | null;
+            /**
+             * Tolerance Deg
+             * @description Every method is given the flight within it
+             */
+            tolerance_deg?: number | null;
             /** Trajectory */
             trajectory: string;
         };
@@ -1258,6 +1293,7 @@ export interface components {
          * @description The report of `fullpose compare --report`, key by key; keys may be added, not renamed.
          */
         ComparisonReportOut: {
+            deviation_deg?: components["schemas"]["DeviationOut"] | null;
             /** Duration S */
             duration_s: number;
             /** Exact Within Deg */
@@ -1276,6 +1312,14 @@ export interface components {
             samples: number;
             /** Schema */
             schema: string;
+            /** Smoothing */
+            smoothing?: string | null;
+            /** Suggested Tolerance Deg */
+            suggested_tolerance_deg?: number | null;
+            /** Tolerance Deg */
+            tolerance_deg?: number | null;
+            /** Tolerance Floor Deg */
+            tolerance_floor_deg?: number | null;
         };
         /** Connect */
         Connect: {
@@ -1287,6 +1331,16 @@ export interface components {
              */
             command: "connect";
             lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * DeviationOut
+         * @description By how much the flight that is flown differs from the samples as they were given.
+         */
+        DeviationOut: {
+            /** Max */
+            max: number;
+            /** Rms */
+            rms: number;
         };
         /** Disarm */
         Disarm: {
@@ -2291,7 +2345,7 @@ export interface components {
         };
         /**
          * PlanIn
-         * @description What to plan. Without `start_deg` the start pose is free.
+         * @description What to plan. Without `start_deg` the start pose is free; without `tolerance_deg` the flight is as it is.
          */
         PlanIn: {
             /**
@@ -2315,6 +2369,8 @@ export interface components {
                 number,
                 number
             ] | null;
+            /** Tolerance Deg */
+            tolerance_deg?: number | null;
             /** Trajectory */
             trajectory: string;
         };
@@ -2385,6 +2441,8 @@ export interface components {
             status: components["schemas"]["JobStatus"];
             /** Tags */
             tags: string[];
+            /** Tolerance Deg */
+            tolerance_deg: number | null;
             /** Trajectory */
             trajectory: string;
             /** Trajectory Name */
@@ -2695,6 +2753,8 @@ export interface components {
          */
         ReportOut: {
             blocking: components["schemas"]["BlockingOut"] | null;
+            /** @description That the tolerance was used for */
+            deviation_deg?: components["schemas"]["DeviationOut"] | null;
             /**
              * Exact Percent
              * @description In hundredths, rounded down
@@ -2729,7 +2789,10 @@ export interface components {
             }[];
             /** Limited Samples */
             limited_samples: number;
-            /** Max Error Deg */
+            /**
+             * Max Error Deg
+             * @description To the flight as it was given
+             */
             max_error_deg: number;
             /** Max Matrix Error */
             max_matrix_error: number;
@@ -2740,9 +2803,29 @@ export interface components {
             rig: string;
             /** Samples */
             samples: number;
+            /**
+             * Smoothing
+             * @description What was taken away, in words
+             */
+            smoothing?: string | null;
             /** Solve S */
             solve_s: number | null;
             step_us: components["schemas"]["StepTimeOut"] | null;
+            /**
+             * Suggested Tolerance Deg
+             * @description Null where none is needed
+             */
+            suggested_tolerance_deg?: number | null;
+            /**
+             * Tolerance Deg
+             * @description That the flight was planned within
+             */
+            tolerance_deg?: number | null;
+            /**
+             * Tolerance Floor Deg
+             * @description Below it no tolerance helps
+             */
+            tolerance_floor_deg?: number | null;
             /** @description Of method plan */
             verdict?: components["schemas"]["VerdictOut"] | null;
             /**
@@ -2750,6 +2833,11 @@ export interface components {
              * @default []
              */
             warnings: components["schemas"]["Notice"][];
+            /**
+             * Within Tolerance
+             * @description Whether every sample is
+             */
+            within_tolerance?: boolean | null;
         };
         /** Reset */
         Reset: {
@@ -3593,6 +3681,53 @@ export interface components {
             until: string | null;
             /** User */
             user: string;
+        };
+        /**
+         * ToleranceEffect
+         * @description What a tolerance does to a flight before a rig is asked; columns of equal length for a plot.
+         */
+        ToleranceEffect: {
+            /**
+             * Cut Off Hz
+             * @description What is slower is the flight; null: nothing was taken away
+             */
+            cut_off_hz: number | null;
+            /** Deviation At Deg */
+            deviation_at_deg: number[];
+            deviation_deg: components["schemas"]["DeviationOut"];
+            flown: components["schemas"]["BodyPeaks"];
+            /**
+             * Needed
+             * @description Whether the recording makes a good part of the peak acceleration
+             */
+            needed: boolean;
+            recorded: components["schemas"]["BodyPeaks"];
+            /** Samples */
+            samples: number;
+            /**
+             * Smoothing
+             * @description What was taken away, in words
+             */
+            smoothing: string;
+            /**
+             * Suggested Tolerance Deg
+             * @description Null where the recording added nothing
+             */
+            suggested_tolerance_deg: number | null;
+            /** Time S */
+            time_s: number[];
+            /**
+             * Tolerance Deg
+             * @description That was asked for, or that is suggested
+             */
+            tolerance_deg: number | null;
+            /**
+             * Tolerance Floor Deg
+             * @description Below it no tolerance helps
+             */
+            tolerance_floor_deg: number | null;
+            /** Within Tolerance */
+            within_tolerance: boolean;
         };
         /**
          * TrajectoryIn
@@ -8521,6 +8656,94 @@ export interface operations {
             };
             /** @description Validation Error */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    tolerance_of_trajectory_api_v1_trajectories__sha256__tolerance_get: {
+        parameters: {
+            query?: {
+                points?: number;
+                tolerance_deg?: number | null;
+            };
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ToleranceEffect"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many at once: try again later */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };

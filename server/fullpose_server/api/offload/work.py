@@ -34,6 +34,7 @@ class Work(StrEnum):
     READ_FILE = "read_file"
     READ_JSON = "read_json"
     SOLVE = "solve"
+    TOLERANCE = "tolerance"
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,19 @@ class SolveRequest:
     answer: str
     rigs: str
     samples: int
+
+    def to_json(self) -> dict[str, Any]:
+        """Values for `json`."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class ToleranceRequest:
+    """What a tolerance does to a flight: the folder of its arrays, the tolerance or None for what is suggested."""
+
+    folder: str
+    tolerance_deg: float | None
+    points: int
 
     def to_json(self) -> dict[str, Any]:
         """Values for `json`."""
@@ -138,7 +152,20 @@ def _solved(body: SolveIn, rig: Rig) -> SolveOut:
     )
 
 
-MAKERS: dict[str, Maker] = {Work.READ_FILE: _read_file, Work.READ_JSON: _read_json, Work.SOLVE: _solve}
+def _tolerance(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    # Numba and SciPy: a second that an upload need not wait for.
+    from fullpose_server.api.offload.tolerance import tolerance_effect
+
+    asked = ToleranceRequest(**values)
+    return tolerance_effect(Path(asked.folder), asked.tolerance_deg, asked.points)
+
+
+MAKERS: dict[str, Maker] = {
+    Work.READ_FILE: _read_file,
+    Work.READ_JSON: _read_json,
+    Work.SOLVE: _solve,
+    Work.TOLERANCE: _tolerance,
+}
 
 
 def failure(error: Exception, bound: int) -> dict[str, Any]:

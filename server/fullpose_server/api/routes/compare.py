@@ -50,6 +50,7 @@ async def add_comparison(body: CompareIn, response: Response, services: Services
             rate_hz=rate_hz,
             start=start,
             created=time.time(),
+            tolerance_deg=body.tolerance_deg,
         )
         job = await services.comparisons.submit(request, who)
         response.headers["Location"] = f"/api/v1/compare/{job.id}"

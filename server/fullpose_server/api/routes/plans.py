@@ -40,6 +40,7 @@ from fullpose_server.planning.plan_result import refusal_of
 from fullpose_server.planning.scrub import open_plan
 from fullpose_server.store.jobs import JobStatus
 from fullpose_server.store.keyset import Key
+from fullpose_server.store.plans import PlanAsked
 from fullpose_server.store.tables import PlanRow
 
 router = APIRouter(tags=["plans"])
@@ -68,13 +69,16 @@ async def add_plan(body: PlanIn, response: Response, services: ServicesDep, who:
             start_pose(body.start_deg, entry.rig, "start_deg")
         row = await asyncio.to_thread(
             services.plans.add,
-            trajectory=body.trajectory,
-            rig=body.rig,
-            rig_hash=rig_hash(entry.rig),
-            method=body.method,
-            options=dict(body.options),
-            start_deg=None if body.start_deg is None else list(body.start_deg),
-            rate_hz=services.settings.rig_rate_hz,
+            PlanAsked(
+                trajectory=body.trajectory,
+                rig=body.rig,
+                rig_hash=rig_hash(entry.rig),
+                method=body.method,
+                options=dict(body.options),
+                start_deg=None if body.start_deg is None else list(body.start_deg),
+                tolerance_deg=body.tolerance_deg,
+                rate_hz=services.settings.rig_rate_hz,
+            ),
         )
         services.queue.submit(row.id, who)
         response.headers["Location"] = f"/api/v1/plans/{row.id}"
@@ -124,14 +128,17 @@ async def add_remedy(plan: str, body: RemedyIn, response: Response, services: Se
         check_frame(body.frame, entry.rig)
         row = await asyncio.to_thread(
             services.plans.add,
-            trajectory=of.trajectory,
-            rig=of.rig,
-            rig_hash=rig_hash(entry.rig),
-            method=DEFAULT,  # every trial of a remedy is the planner's
-            options=of.options if of.method == DEFAULT else {},
-            start_deg=of.start_deg,
-            rate_hz=services.settings.rig_rate_hz,
-            remedy={"of": plan, **body.model_dump()},
+            PlanAsked(
+                trajectory=of.trajectory,
+                rig=of.rig,
+                rig_hash=rig_hash(entry.rig),
+                method=DEFAULT,  # every trial of a remedy is the planner's
+                options=of.options if of.method == DEFAULT else {},
+                start_deg=of.start_deg,
+                tolerance_deg=of.tolerance_deg,
+                rate_hz=services.settings.rig_rate_hz,
+                remedy={"of": plan, **body.model_dump()},
+            ),
         )
         services.queue.submit(row.id, who)
         response.headers["Location"] = f"/api/v1/plans/{row.id}"
@@ -187,6 +194,7 @@ def _out(services: Services, row: PlanRow, name: str | None = None) -> PlanOut:
             "method": row.method,
             "options": row.options,
             "start_deg": row.start_deg,
+            "tolerance_deg": row.tolerance_deg,
             "created_at": _time(row.created),
             "started_at": _time(row.started),
             "finished_at": _time(row.finished),

@@ -14,13 +14,13 @@ from pydantic import TypeAdapter
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.labels import WantedDep, changed
-from fullpose_server.api.offload.work import ReadRequest, Work
+from fullpose_server.api.offload.work import ReadRequest, ToleranceRequest, Work
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.base import Notice
 from fullpose_server.api.schemas.labels import LabelsIn
-from fullpose_server.api.schemas.trajectories import TrajectoryOut, TrajectoryPreview
+from fullpose_server.api.schemas.trajectories import ToleranceEffect, TrajectoryOut, TrajectoryPreview
 from fullpose_server.api.uploads import receive_body, receive_form
 from fullpose_server.errors import InUseError
 from fullpose_server.formats.flight_folder import FlightFacts, read_arrays
@@ -152,6 +152,20 @@ def preview_trajectory(
         roll_deg=roll.tolist(),
         q=[tuple(row) for row in q[rows].tolist()],
     )
+
+
+@router.get("/{sha256}/tolerance", responses=BUSY)
+async def tolerance_of_trajectory(
+    sha256: str,
+    services: ServicesDep,
+    tolerance_deg: Annotated[float | None, Query(gt=0.0, le=90.0)] = None,
+    points: Annotated[int, Query(ge=2, le=20_000)] = 1000,
+) -> ToleranceEffect:
+    """What a tolerance does to the flight: deviation and body accelerations. Without one, the one that is suggested."""
+    await asyncio.to_thread(services.trajectories.get, sha256)
+    folder = str(services.trajectories.folder(sha256))
+    made = await services.offload.run(Work.TOLERANCE, ToleranceRequest(folder, tolerance_deg, points).to_json())
+    return ToleranceEffect.model_validate(made)
 
 
 @router.delete(

@@ -8,11 +8,13 @@ from pydantic import Field
 from fullpose_server.api.schemas.base import Four, FrameName, LimitName, Name, Options, OptionValue, Sha256, Wire, Word
 from fullpose_server.api.schemas.plans import (
     BlockingOut,
+    DeviationOut,
     IterationsOut,
     JobErrorOut,
     PeaksOut,
     ProgressOut,
     StepTimeOut,
+    ToleranceDeg,
     ViolationOut,
 )
 from fullpose_server.store.jobs import JobStatus
@@ -37,6 +39,7 @@ class CompareIn(Wire):
     rig: Name
     methods: list[Annotated[str, Field(max_length=1000)] | MethodIn] = Field(min_length=1, max_length=32)
     start_deg: Four | None = None
+    tolerance_deg: ToleranceDeg | None = Field(default=None, description="Every method is given the flight within it")
 
 
 class FailureOut(Wire):
@@ -95,6 +98,11 @@ class ComparisonReportOut(Wire):
     samples: int
     duration_s: float
     resampling: str | None
+    tolerance_deg: float | None = None
+    deviation_deg: DeviationOut | None = None
+    suggested_tolerance_deg: float | None = None
+    tolerance_floor_deg: float | None = None
+    smoothing: str | None = None
     exact_within_deg: float
     methods: list[MethodFiguresOut]
 

@@ -1,7 +1,7 @@
 """Plans, their reports and jobs on the wire."""
 
 from datetime import datetime
-from typing import Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
@@ -23,15 +23,18 @@ from fullpose_server.api.schemas.base import (
 from fullpose_server.api.schemas.labels import LabelledOut
 from fullpose_server.store.jobs import JobStatus
 
+ToleranceDeg = Annotated[float, Field(gt=0.0, le=90.0, description="The attitude may differ from the flight's by that")]
+
 
 class PlanIn(Wire):
-    """What to plan. Without `start_deg` the start pose is free."""
+    """What to plan. Without `start_deg` the start pose is free; without `tolerance_deg` the flight is as it is."""
 
     trajectory: Sha256
     rig: Name
     method: Word = "plan"
     options: Options = Field(default={})
     start_deg: Four | None = None
+    tolerance_deg: ToleranceDeg | None = None
 
 
 class ProgressOut(Wire):
@@ -106,6 +109,13 @@ class LeadsOut(Wire):
     refusal: str | None = Field(description="Why there is none")
 
 
+class DeviationOut(Wire):
+    """By how much the flight that is flown differs from the samples as they were given."""
+
+    max: float
+    rms: float
+
+
 class ReportOut(Wire):
     """The report of `fullpose solve --report`, key by key; keys may be added, not renamed."""
 
@@ -115,7 +125,7 @@ class ReportOut(Wire):
     feasible: bool = Field(description="Inside every limit, no sample given up for one; see exact_samples")
     exact_samples: int | None = Field(default=None, description="Within 1e-9 deg of the attitude")
     exact_percent: float | None = Field(default=None, description="In hundredths, rounded down")
-    max_error_deg: float
+    max_error_deg: float = Field(description="To the flight as it was given")
     max_matrix_error: float
     iterations: IterationsOut
     step_us: StepTimeOut | None
@@ -126,6 +136,12 @@ class ReportOut(Wire):
     limited_samples: int
     limited_by: list[dict[str, str | int]] = Field(description="frame, limit, samples")
     blocking: BlockingOut | None
+    tolerance_deg: float | None = Field(default=None, description="That the flight was planned within")
+    within_tolerance: bool | None = Field(default=None, description="Whether every sample is")
+    deviation_deg: DeviationOut | None = Field(default=None, description="That the tolerance was used for")
+    suggested_tolerance_deg: float | None = Field(default=None, description="Null where none is needed")
+    tolerance_floor_deg: float | None = Field(default=None, description="Below it no tolerance helps")
+    smoothing: str | None = Field(default=None, description="What was taken away, in words")
     warnings: list[Notice] = Field(default=[])
     verdict: VerdictOut | None = Field(default=None, description="Of method plan")
     leads: LeadsOut | None = Field(default=None, description="Of method plan")
@@ -212,6 +228,7 @@ class PlanOut(LabelledOut):
     method: str
     options: dict[str, OptionValue]
     start_deg: Four | None
+    tolerance_deg: float | None
     created_at: datetime
     started_at: datetime | None
     finished_at: datetime | None

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from fullpose_server.api.schemas.base import Four, Notice, Number, Sha256, Wire
 from fullpose_server.api.schemas.labels import LabelledOut
+from fullpose_server.api.schemas.plans import DeviationOut
 
 ConventionName = Literal["nue", "ned"]
 Samples = Annotated[list[Number], Field(min_length=1, fail_fast=True)]
@@ -68,6 +69,31 @@ class TrajectoryOut(LabelledOut):
     peak_body_rate_deg_s: float | None
     warnings: list[Notice]
     created_at: datetime
+
+
+class BodyPeaks(Wire):
+    """The body's largest rate and acceleration, by differences of the samples."""
+
+    rate_deg_s: float
+    acceleration_deg_s2: float
+
+
+class ToleranceEffect(Wire):
+    """What a tolerance does to a flight before a rig is asked; columns of equal length for a plot."""
+
+    samples: int
+    needed: bool = Field(description="Whether the recording makes a good part of the peak acceleration")
+    tolerance_deg: float | None = Field(description="That was asked for, or that is suggested")
+    suggested_tolerance_deg: float | None = Field(description="Null where the recording added nothing")
+    tolerance_floor_deg: float | None = Field(description="Below it no tolerance helps")
+    within_tolerance: bool
+    deviation_deg: DeviationOut
+    cut_off_hz: float | None = Field(description="What is slower is the flight; null: nothing was taken away")
+    smoothing: str = Field(description="What was taken away, in words")
+    recorded: BodyPeaks
+    flown: BodyPeaks
+    time_s: list[float]
+    deviation_at_deg: list[float]
 
 
 class TrajectoryPreview(Wire):
