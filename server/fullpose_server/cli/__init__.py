@@ -15,7 +15,20 @@ from fullpose_server.cli._exit import BAD_INPUT, fail
 from fullpose_server.errors import ServerError
 
 ORDER = (
-    *("demo", "serve", "solve", "remedy", "compare", "rigs", "export", "evidence", "audit", "backup", "restore"),
+    *(
+        "demo",
+        "serve",
+        "solve",
+        "inspect",
+        "remedy",
+        "compare",
+        "rigs",
+        "export",
+        "evidence",
+        "audit",
+        "backup",
+        "restore",
+    ),
     *("user", "token", "doctor", "config"),
 )
 

@@ -28,7 +28,7 @@ def read_flight(path: Path, convention: str, rig: "Rig", start: str | None) -> F
     start: the text of --start, which comes before the scenario's own. Raises `ServerError`, `InputError`.
     """
     pose = None if start is None else _pose(start, rig)  # first: a file may take long to read
-    how = _convention(convention)
+    how = read_convention(convention)
     if path.suffix == ".toml":
         return _scenario(path, rig, pose)
     from fullpose_server.formats.trajectory_file import read_trajectory
@@ -66,7 +66,8 @@ def _pose(text: str, rig: "Rig") -> "NDArray[Any]":
     return np.array(start_pose(angles, rig, "--start"))
 
 
-def _convention(text: str) -> Any:
+def read_convention(text: str) -> Any:
+    """The convention of that name; anything else ends the command."""
     from fullpose_server.formats.trajectory import Convention
 
     try:

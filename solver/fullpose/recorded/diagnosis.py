@@ -28,6 +28,7 @@ class Diagnosis:
     """What `diagnose` finds. Arrays are read-only; nothing found is zero, empty or None."""
 
     samples: int
+    time_s: Array  # (n,) as recorded
     duration_s: float
     median_step_s: float  # of the regular clock where there is one
     smallest_step_s: float
@@ -81,10 +82,11 @@ def diagnose(time_s: ArrayLike, attitude: ArrayLike) -> Diagnosis:
     all_true = bool(true.all())
     noise = white_noise(clock, q) if all_true else white_noise(clock[true], q[true])
     found = outliers(clock, q, float(noise.sigma.max())) if all_true else _outliers_among(clock, q, true, noise.sigma)
-    for part in (noise.sigma, held.mask, steps.near_duplicates, found.sample, found.size_rad, found.sigmas):
+    for part in (time, noise.sigma, held.mask, steps.near_duplicates, found.sample, found.size_rad, found.sigmas):
         part.setflags(write=False)
     return Diagnosis(
         samples=time.size,
+        time_s=time,
         duration_s=float(time[-1] - time[0]),
         median_step_s=stamps.median_step_s,
         smallest_step_s=steps.smallest_s,

@@ -1,6 +1,7 @@
 """Uploads through a real server: what is right is stored by its hash, what is wrong is one clear problem."""
 
 import io
+import math
 import socket
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -176,3 +177,30 @@ def test_a_preview_counts_the_turns_between_the_samples_it_keeps(server: LiveSer
         assert len(preview["time_s"]) <= points + 7
         assert preview["roll_deg"] == pytest.approx([720.0 * at for at in preview["time_s"]], abs=1e-6)
         assert preview["roll_deg"][-1] == pytest.approx(roll[-1])
+
+
+def recorded(rate_hz: int, decimals: int, samples: int = 1001) -> str:
+    """A roll of sines, rounded."""
+    rows = (f"{k / rate_hz},0,0,{40 * math.sin(k / rate_hz):.{decimals}f}\n" for k in range(samples))
+    return "time_s,yaw_deg,pitch_deg,roll_deg\n" + "".join(rows)
+
+
+def test_a_flight_is_diagnosed(server: LiveServer) -> None:
+    sha256 = server.upload(recorded(500, 2)).json()["sha256"]
+    found = server.http.get(f"/trajectories/{sha256}/diagnosis").json()
+    assert found["quantum"]["unit"] == 0.01
+    assert found["rig"] is None
+    assert found["findings"][0]["level"] == "warning"
+    assert found["findings"][0]["sentence"].startswith("Angles are rounded to 0.01 deg")
+    assert sum(found["plots"]["steps"]["count"]) == 1000
+    on_rig = server.http.get(f"/trajectories/{sha256}/diagnosis", params={"rig": "vertical-4"}).json()
+    assert on_rig["rig"]["frames"]["inner"]["noise_acceleration_deg_s2"]["median"] > 100.0
+    assert "of the frames of vertical-4" in on_rig["findings"][0]["sentence"]
+
+
+def test_a_diagnosis_of_what_is_not_there_is_a_problem(server: LiveServer) -> None:
+    problem(server.http.get(f"/trajectories/{'0' * 64}/diagnosis"), 404, "not-found")
+    sha256 = server.upload(recorded(500, 3)).json()["sha256"]
+    problem(server.http.get(f"/trajectories/{sha256}/diagnosis", params={"rig": "none-4"}), 404, "not-found")
+    problem(server.http.get(f"/trajectories/{sha256}/diagnosis", params={"rig": "../x"}), 422, "validation")
+    assert list(server.settings.data_dir.glob("uploads/*")) == []

@@ -817,6 +817,27 @@ export interface paths {
         patch: operations["label_trajectory_api_v1_trajectories__sha256__patch"];
         trace?: never;
     };
+    "/api/v1/trajectories/{sha256}/diagnosis": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Diagnose Trajectory
+         * @description What the flight is made of and what is wrong with it: noise, rounding, holds, stamps, gaps, outliers, each with a
+         *     figure; with `rig`, what the noise costs its frames.
+         */
+        get: operations["diagnose_trajectory_api_v1_trajectories__sha256__diagnosis_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/trajectories/{sha256}/preview": {
         parameters: {
             query?: never;
@@ -1169,6 +1190,28 @@ export interface components {
             time_s: number;
         };
         /**
+         * BodyPeakOut
+         * @description The largest of a vector, and about each body axis, with times.
+         */
+        BodyPeakOut: {
+            /** Axes */
+            axes: [
+                number,
+                number,
+                number
+            ];
+            /** Axes Time S */
+            axes_time_s: [
+                number,
+                number,
+                number
+            ];
+            /** Max */
+            max: number;
+            /** Time S */
+            time_s: number;
+        };
+        /**
          * BodyPeaks
          * @description The body's largest rate and acceleration, by differences of the samples.
          */
@@ -1342,6 +1385,78 @@ export interface components {
             /** Rms */
             rms: number;
         };
+        /**
+         * DiagnosisOut
+         * @description What a flight is made of and what is wrong with it.
+         */
+        DiagnosisOut: {
+            body_acceleration_deg_s2: components["schemas"]["BodyPeakOut"];
+            body_rate_deg_s: components["schemas"]["BodyPeakOut"];
+            /** Duration S */
+            duration_s: number;
+            /**
+             * Findings
+             * @description Warnings first
+             */
+            findings: components["schemas"]["Finding"][];
+            /** Gap Count */
+            gap_count: number;
+            /**
+             * Gaps
+             * @description The first 100
+             */
+            gaps: components["schemas"]["GapOut"][];
+            held: components["schemas"]["HeldOut"] | null;
+            /** Near Duplicate Samples */
+            near_duplicate_samples: number;
+            /**
+             * Near Duplicates
+             * @description The first 100
+             */
+            near_duplicates: components["schemas"]["NearDuplicate"][];
+            /**
+             * Noise Acceleration Deg S2
+             * @description What noise or rounding alone costs the body
+             */
+            noise_acceleration_deg_s2: [
+                number,
+                number,
+                number
+            ];
+            /** Noise Measured */
+            noise_measured: boolean;
+            /** Outlier Samples */
+            outlier_samples: number;
+            /**
+             * Outliers
+             * @description The first 100
+             */
+            outliers: components["schemas"]["OutlierOut"][];
+            plots: components["schemas"]["DiagnosisPlots"];
+            quantum: components["schemas"]["QuantumOut"] | null;
+            rig: components["schemas"]["RigCost"] | null;
+            /** Samples */
+            samples: number;
+            stamps: components["schemas"]["StampsOut"];
+            step_s: components["schemas"]["StepsOut"];
+            /**
+             * White Noise Deg
+             * @description Standard deviation per body axis
+             */
+            white_noise_deg: [
+                number,
+                number,
+                number
+            ];
+        };
+        /**
+         * DiagnosisPlots
+         * @description What the console draws.
+         */
+        DiagnosisPlots: {
+            noise: components["schemas"]["NoisePlot"];
+            steps: components["schemas"]["StepsPlot"];
+        };
         /** Disarm */
         Disarm: {
             /** @default {} */
@@ -1433,6 +1548,32 @@ export interface components {
             where: string;
         };
         /**
+         * Finding
+         * @description One thing found, as a sentence with its figure.
+         */
+        Finding: {
+            /** Code */
+            code: string;
+            /**
+             * Level
+             * @enum {string}
+             */
+            level: "warning" | "remark";
+            /** Sentence */
+            sentence: string;
+        };
+        /**
+         * FrameCost
+         * @description What the noise costs a frame, beside its limits.
+         */
+        FrameCost: {
+            /** Max Acceleration Deg S2 */
+            max_acceleration_deg_s2: number | null;
+            /** Max Rate Deg S */
+            max_rate_deg_s: number | null;
+            noise_acceleration_deg_s2: components["schemas"]["NoiseCost"];
+        };
+        /**
          * FrameMargins
          * @description Null: no limit. deg, deg/s, deg/s^2.
          */
@@ -1468,6 +1609,21 @@ export interface components {
             inner: components["schemas"]["FrameOut"];
             middle: components["schemas"]["FrameOut"];
             outer: components["schemas"]["FrameOut"];
+        };
+        /**
+         * GapOut
+         * @description A time without samples.
+         */
+        GapOut: {
+            /** End S */
+            end_s: number;
+            /** Start S */
+            start_s: number;
+            /**
+             * Steps
+             * @description In median steps of its neighbours
+             */
+            steps: number;
         };
         /** GoLive */
         GoLive: {
@@ -1511,6 +1667,21 @@ export interface components {
             version: string;
             /** Warnings */
             warnings: string[];
+        };
+        /**
+         * HeldOut
+         * @description Samples that repeat the one before although the flight moves.
+         */
+        HeldOut: {
+            /**
+             * Length
+             * @description Samples a run, on average, where the flight is held at one rate; else 1
+             */
+            length: number;
+            /** Rate Hz */
+            rate_hz: number | null;
+            /** Samples */
+            samples: number;
         };
         /**
          * Hello
@@ -2147,10 +2318,44 @@ export interface components {
             ];
         };
         /**
+         * NearDuplicate
+         * @description A sample whose stamp all but repeats the one before.
+         */
+        NearDuplicate: {
+            /** Sample */
+            sample: number;
+            /** Time S */
+            time_s: number;
+        };
+        /**
          * NoArgs
          * @description A command without arguments.
          */
         NoArgs: Record<string, never>;
+        /**
+         * NoiseCost
+         * @description Standard deviations of a frame's acceleration, over the flight.
+         */
+        NoiseCost: {
+            /** Max */
+            max: number;
+            /** Median */
+            median: number;
+        };
+        /**
+         * NoisePlot
+         * @description Noise over time: the largest divided difference of each stretch.
+         */
+        NoisePlot: {
+            /** Time S */
+            time_s: number[];
+            /** X Deg */
+            x_deg: number[];
+            /** Y Deg */
+            y_deg: number[];
+            /** Z Deg */
+            z_deg: number[];
+        };
         /**
          * Notice
          * @description Something accepted that a person should look at.
@@ -2258,6 +2463,20 @@ export interface components {
              * @enum {string}
              */
             type: "open";
+        };
+        /**
+         * OutlierOut
+         * @description A sample off its neighbours.
+         */
+        OutlierOut: {
+            /** Sample */
+            sample: number;
+            /** Sigmas */
+            sigmas: number;
+            /** Size Deg */
+            size_deg: number;
+            /** Time S */
+            time_s: number;
         };
         /**
          * PasswordIn
@@ -2592,6 +2811,24 @@ export interface components {
             total: number;
         };
         /**
+         * QuantumOut
+         * @description What the attitude is rounded to.
+         */
+        QuantumOut: {
+            /** Deg */
+            deg: number;
+            /**
+             * Of
+             * @enum {string}
+             */
+            of: "angles_deg" | "quaternion" | "counts";
+            /**
+             * Unit
+             * @description In what is rounded: degrees, or a quaternion's component
+             */
+            unit: number;
+        };
+        /**
          * Record
          * @description The binary record: its size in bytes and its fields.
          */
@@ -2860,6 +3097,18 @@ export interface components {
              */
             command: "resume";
             lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * RigCost
+         * @description What the noise costs a rig's frames.
+         */
+        RigCost: {
+            /** Frames */
+            frames: {
+                [key: string]: components["schemas"]["FrameCost"];
+            };
+            /** Name */
+            name: string;
         };
         /**
          * RigHealth
@@ -3374,6 +3623,23 @@ export interface components {
              */
             type: "speed";
         };
+        /**
+         * StampsOut
+         * @description How regular the stamps are.
+         */
+        StampsOut: {
+            /** Jitter Max S */
+            jitter_max_s: number;
+            /** Jitter Rms S */
+            jitter_rms_s: number;
+            /** Quantum S */
+            quantum_s: number;
+            /**
+             * Regular Rate Hz
+             * @description Of the regular clock that explains the jitter
+             */
+            regular_rate_hz: number | null;
+        };
         /** Start */
         Start: {
             /** @default {} */
@@ -3391,6 +3657,28 @@ export interface components {
          * @enum {string}
          */
         State: "disconnected" | "idle" | "ready" | "armed" | "positioning" | "running" | "held" | "stopping" | "live" | "estopped" | "faulted";
+        /**
+         * StepsOut
+         * @description Steps between samples [s].
+         */
+        StepsOut: {
+            /** Max */
+            max: number;
+            /** Median */
+            median: number;
+            /** Min */
+            min: number;
+        };
+        /**
+         * StepsPlot
+         * @description How many steps are between each edge and the next.
+         */
+        StepsPlot: {
+            /** Count */
+            count: number[];
+            /** Edge S */
+            edge_s: number[];
+        };
         /** StepTimeOut */
         StepTimeOut: {
             /** Median */
@@ -8587,6 +8875,93 @@ export interface operations {
             };
             /** @description No room on the disk */
             507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    diagnose_trajectory_api_v1_trajectories__sha256__diagnosis_get: {
+        parameters: {
+            query?: {
+                rig?: string | null;
+            };
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DiagnosisOut"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many at once: try again later */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };

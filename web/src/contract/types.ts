@@ -19,6 +19,7 @@ export type Convention = NonNullable<FlightForm["convention"]>;
 export type ExportFormat = NonNullable<
   NonNullable<paths["/api/v1/runs/{run}/export"]["get"]["parameters"]["query"]>["format"]
 >;
+export type Diagnosis = Schemas["DiagnosisOut"];
 /** A flight's file as a form. */
 export type FlightForm = paths["/api/v1/trajectories"]["post"]["requestBody"]["content"]["multipart/form-data"];
 /** One frame's limits in degrees; null for no limit. */

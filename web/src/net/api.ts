@@ -47,6 +47,8 @@ export const api = {
   trajectories: (before: string | null = null) => page("/api/v1/trajectories", {}, {}, before, READ.withinMs),
   preview: (sha256: string, points = 800) =>
     request("get", "/api/v1/trajectories/{sha256}/preview", { sha256 }, { ...READ, query: { points } }),
+  diagnosis: (sha256: string, rig: string | null = null) =>
+    request("get", "/api/v1/trajectories/{sha256}/diagnosis", { sha256 }, { ...READ, query: rig ? { rig } : {} }),
   deleteTrajectory: (sha256: string) => request("delete", "/api/v1/trajectories/{sha256}", { sha256 }, READ),
   upload,
 

@@ -1,5 +1,5 @@
 /** Messages as the server sends them, for tests: whole, and ordinary in all that a test does not say. */
-import type { Alarm, Lease, LeaseGiven, Rig, Run, Snapshot, Trajectory } from "../contract/types";
+import type { Alarm, Diagnosis, Lease, LeaseGiven, Rig, Run, Snapshot, Trajectory } from "../contract/types";
 import { me } from "../net/identity";
 
 export function leaseOf(holder: string | null, given: Partial<Lease> = {}): Lease {
@@ -120,6 +120,36 @@ export function runOf(given: Partial<Run> = {}): Run {
     end_code: null,
     tags: [],
     notes: "",
+    ...given,
+  };
+}
+
+export function diagnosisOf(given: Partial<Diagnosis> = {}): Diagnosis {
+  const peak = { max: 50, time_s: 1, axes: [50, 0, 0], axes_time_s: [1, 0, 0] } satisfies Diagnosis["body_rate_deg_s"];
+  return {
+    samples: 1001,
+    duration_s: 10,
+    step_s: { median: 0.01, min: 0.01, max: 0.01 },
+    white_noise_deg: [0, 0, 0],
+    noise_measured: true,
+    noise_acceleration_deg_s2: [0, 0, 0],
+    quantum: null,
+    held: null,
+    stamps: { jitter_rms_s: 0, jitter_max_s: 0, quantum_s: 0, regular_rate_hz: null },
+    near_duplicate_samples: 0,
+    near_duplicates: [],
+    gap_count: 0,
+    gaps: [],
+    outlier_samples: 0,
+    outliers: [],
+    body_rate_deg_s: peak,
+    body_acceleration_deg_s2: peak,
+    rig: null,
+    findings: [],
+    plots: {
+      noise: { time_s: [], x_deg: [], y_deg: [], z_deg: [] },
+      steps: { edge_s: [0.005, 0.01, 0.015], count: [0, 1000] },
+    },
     ...given,
   };
 }

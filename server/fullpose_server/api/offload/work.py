@@ -21,7 +21,7 @@ from fullpose_server.api.problems import ApiError, validation_problem
 from fullpose_server.api.schemas.plans import ReportOut
 from fullpose_server.api.schemas.solve import SolveIn, SolveOut
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
-from fullpose_server.formats.flight_folder import write_flight
+from fullpose_server.formats.flight_folder import read_arrays, write_flight
 from fullpose_server.formats.importers.columns import Bounds, check_rows
 from fullpose_server.formats.trajectory import Convention, Trajectory, from_columns
 from fullpose_server.formats.trajectory_file import read_trajectory, source_format
@@ -35,6 +35,7 @@ class Work(StrEnum):
     READ_JSON = "read_json"
     SOLVE = "solve"
     TOLERANCE = "tolerance"
+    DIAGNOSE = "diagnose"
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,21 @@ class ToleranceRequest:
     folder: str
     tolerance_deg: float | None
     points: int
+
+    def to_json(self) -> dict[str, Any]:
+        """Values for `json`."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class DiagnoseRequest:
+    """A stored flight: its folder and samples, where the answer goes, where the rigs are, and which one, if any."""
+
+    folder: str
+    samples: int
+    answer: str
+    rigs: str
+    rig: str | None
 
     def to_json(self) -> dict[str, Any]:
         """Values for `json`."""
@@ -160,11 +176,25 @@ def _tolerance(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]
     return tolerance_effect(Path(asked.folder), asked.tolerance_deg, asked.points)
 
 
+def _diagnose(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    # Numba and SciPy, as for a solve.
+    from fullpose_server.api.schemas.diagnosis import DiagnosisOut
+    from fullpose_server.formats.diagnosis import diagnosis_document
+    from fullpose_server.formats.rig_file import RigStore
+
+    asked = DiagnoseRequest(**values)
+    rig = None if asked.rig is None else RigStore(Path(asked.rigs)).get(asked.rig).rig
+    document = diagnosis_document(*read_arrays(Path(asked.folder), asked.samples), rig)
+    Path(asked.answer).write_text(DiagnosisOut.model_validate(document).model_dump_json(), encoding="utf-8")
+    return {}
+
+
 MAKERS: dict[str, Maker] = {
     Work.READ_FILE: _read_file,
     Work.READ_JSON: _read_json,
     Work.SOLVE: _solve,
     Work.TOLERANCE: _tolerance,
+    Work.DIAGNOSE: _diagnose,
 }
 
 

@@ -10,15 +10,18 @@ from uuid import uuid4
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import TypeAdapter
+from starlette.background import BackgroundTask
+from starlette.responses import FileResponse
 
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.labels import WantedDep, changed
-from fullpose_server.api.offload.work import ReadRequest, ToleranceRequest, Work
+from fullpose_server.api.offload.work import DiagnoseRequest, ReadRequest, ToleranceRequest, Work
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
-from fullpose_server.api.schemas.base import Notice
+from fullpose_server.api.schemas.base import Name, Notice
+from fullpose_server.api.schemas.diagnosis import DiagnosisOut
 from fullpose_server.api.schemas.labels import LabelsIn
 from fullpose_server.api.schemas.trajectories import ToleranceEffect, TrajectoryOut, TrajectoryPreview
 from fullpose_server.api.uploads import receive_body, receive_form
@@ -166,6 +169,24 @@ async def tolerance_of_trajectory(
     folder = str(services.trajectories.folder(sha256))
     made = await services.offload.run(Work.TOLERANCE, ToleranceRequest(folder, tolerance_deg, points).to_json())
     return ToleranceEffect.model_validate(made)
+
+
+@router.get("/{sha256}/diagnosis", response_model=DiagnosisOut, responses=BUSY)
+async def diagnose_trajectory(sha256: str, services: ServicesDep, rig: Name | None = None) -> FileResponse:
+    """What the flight is made of and what is wrong with it: noise, rounding, holds, stamps, gaps, outliers, each with a
+    figure; with `rig`, what the noise costs its frames.
+    """
+    row = await asyncio.to_thread(services.trajectories.get, sha256)
+    answer = services.uploads / uuid4().hex
+    folder = services.trajectories.folder(sha256)
+    asked = DiagnoseRequest(str(folder), row.samples, str(answer), str(services.rigs.folder), rig)
+    try:
+        await services.offload.run(Work.DIAGNOSE, asked.to_json())
+    except BaseException:
+        answer.unlink(missing_ok=True)
+        raise
+    done = BackgroundTask(answer.unlink, missing_ok=True)
+    return FileResponse(answer, media_type="application/json", background=done)
 
 
 @router.delete(

@@ -2,7 +2,7 @@
 import { fireEvent, screen, within } from "@testing-library/svelte";
 import { expect, it } from "vitest";
 import { TestConsole } from "../../testing/console";
-import { FLIGHT } from "../../testing/wire";
+import { diagnosisOf, FLIGHT } from "../../testing/wire";
 import Trajectories from "./Trajectories.svelte";
 
 it("a flight is deleted once a person says so", async () => {
@@ -12,4 +12,24 @@ it("a flight is deleted once a person says so", async () => {
   await fireEvent.click(await screen.findByRole("button", { name: "Delete the flight" }));
   await fireEvent.click(within(screen.getByRole("dialog")).getByRole("button", { name: "Delete" }));
   await expect.poll(() => console.asked).toContainEqual(["deleteTrajectory", "f"]);
+});
+
+it("a flight says what is wrong with it, and is asked about for the rig that is operated", async () => {
+  const sentence = "Samples are held, 50.0 Hz written out at 400 Hz.";
+  const found = diagnosisOf({ findings: [{ code: "held", level: "warning", sentence }] });
+  const console = new TestConsole({ trajectories: { rows: [FLIGHT], next: null }, diagnosis: found });
+  await console.stores.library.flights.refresh();
+  console.stores.operated.open("bench");
+  console.show(Trajectories, {});
+  expect((await screen.findByText(sentence)).closest("li")?.className).toContain("warning");
+  expect(console.asked).toContainEqual(["diagnosis", "f", "bench"]);
+  expect(screen.getByRole("img", { name: "Steps between samples of loop, 5.000 to 15.000 ms" })).toBeTruthy();
+});
+
+it("a diagnosis that fails says why, and the flight is still there", async () => {
+  const console = new TestConsole({ trajectories: { rows: [FLIGHT], next: null }, diagnosis: new Error("too busy") });
+  await console.stores.library.flights.refresh();
+  console.show(Trajectories, {});
+  expect((await screen.findByRole("alert")).textContent).toContain("could not be looked at");
+  expect(screen.getByRole("button", { name: "Plan and fly" })).toBeTruthy();
 });
