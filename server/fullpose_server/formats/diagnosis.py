@@ -14,13 +14,12 @@ from fullpose.recorded.frame_noise import frame_noise_acceleration
 from fullpose.recorded.motion import Peak
 from fullpose.recorded.noise import ORDER
 from fullpose.rig import FRAMES, Rig
-from fullpose_server.formats.diagnosis_sentences import Level, OnRig, findings
-from fullpose_server.formats.trajectory import Caution
+from fullpose_server.formats.diagnosis_sentences import OnRig, findings
 
 MOST_LISTED = 100  # gaps, outliers and near-duplicates; their number is never cut
 POSES = 60  # of a flight at which a rig's share of the noise is worked out
 PLOT_POINTS = 1000
-BINS = 40
+BINS = 41  # odd: no edge is at the middle, where even steps are
 EVEN = 1e-6  # of the median step
 _WINDOWS_A_POINT = 8
 
@@ -60,15 +59,6 @@ def diagnosis_plots(time: Array, q: Array, regular_time: Array | None) -> dict[s
         },
         "steps": {"edge_s": edges.tolist(), "count": counts.tolist()},
     }
-
-
-def diagnosis_cautions(time: Array, q: Array) -> tuple[Caution, ...]:
-    """What of the diagnosis a person should know before the flight is planned."""
-    return tuple(
-        Caution(f"recorded-{each.code}", each.sentence)
-        for each in findings(diagnose(time, q))
-        if each.level is Level.WARNING
-    )
 
 
 def noise_on_rig(found: Diagnosis, q: Array, rig: Rig) -> OnRig:
