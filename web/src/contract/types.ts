@@ -55,6 +55,7 @@ export type StateName = Schemas["State"];
 export type Token = Schemas["TokenOut"];
 export type TokenGiven = Schemas["TokenGiven"];
 export type TokenWanted = Schemas["TokenIn"];
+export type ToleranceEffect = Schemas["ToleranceEffect"];
 export type Trajectory = Schemas["TrajectoryOut"];
 export type TrajectoryPreview = Schemas["TrajectoryPreview"];
 export type User = Schemas["UserOut"];

@@ -49,6 +49,9 @@ export const api = {
     request("get", "/api/v1/trajectories/{sha256}/preview", { sha256 }, { ...READ, query: { points } }),
   diagnosis: (sha256: string, rig: string | null = null) =>
     request("get", "/api/v1/trajectories/{sha256}/diagnosis", { sha256 }, { ...READ, query: rig ? { rig } : {} }),
+  /** What a tolerance does to a flight; without one, the one that is suggested. */
+  tolerance: (sha256: string, tolerance_deg: number | null) =>
+    request("get", "/api/v1/trajectories/{sha256}/tolerance", { sha256 }, { ...READ, query: { tolerance_deg } }),
   deleteTrajectory: (sha256: string) => request("delete", "/api/v1/trajectories/{sha256}", { sha256 }, READ),
   upload,
 
@@ -56,8 +59,9 @@ export const api = {
   plan: (plan: string) => request("get", "/api/v1/plans/{plan}", { plan }, READ),
   planSamples: (plan: string, points = 1200) =>
     request("get", "/api/v1/plans/{plan}/samples", { plan }, { ...READ, query: { points } }),
-  createPlan: (trajectory: string, rig: string, method: string) =>
-    request("post", "/api/v1/plans", {}, { ...READ, body: { trajectory, rig, method, options: {} } }),
+  /** `tolerance_deg`: null for the flight as it is. */
+  createPlan: (trajectory: string, rig: string, method: string, tolerance_deg: number | null) =>
+    request("post", "/api/v1/plans", {}, { ...READ, body: { trajectory, rig, method, options: {}, tolerance_deg } }),
   createRemedy: (plan: string, kind: RemedyKind) =>
     request("post", "/api/v1/plans/{plan}/remedies", { plan }, { ...READ, body: { kind } }),
   cancelPlan: (plan: string) => request("delete", "/api/v1/plans/{plan}", { plan }, READ),

@@ -129,8 +129,8 @@ export class Library {
     }
   }
 
-  async createPlan(trajectory: string, rig: string, method: string): Promise<Plan> {
-    const plan = await this.api.createPlan(trajectory, rig, method);
+  async createPlan(trajectory: string, rig: string, method: string, toleranceDeg: number | null = null): Promise<Plan> {
+    const plan = await this.api.createPlan(trajectory, rig, method, toleranceDeg);
     this.planning.put(plan);
     this.plan = plan.id;
     return plan;

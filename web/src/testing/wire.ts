@@ -1,5 +1,15 @@
 /** Messages as the server sends them, for tests: whole, and ordinary in all that a test does not say. */
-import type { Alarm, Diagnosis, Lease, LeaseGiven, Rig, Run, Snapshot, Trajectory } from "../contract/types";
+import type {
+  Alarm,
+  Diagnosis,
+  Lease,
+  LeaseGiven,
+  Rig,
+  Run,
+  Snapshot,
+  ToleranceEffect,
+  Trajectory,
+} from "../contract/types";
 import { me } from "../net/identity";
 
 export function leaseOf(holder: string | null, given: Partial<Lease> = {}): Lease {
@@ -150,6 +160,26 @@ export function diagnosisOf(given: Partial<Diagnosis> = {}): Diagnosis {
       noise: { time_s: [], x_deg: [], y_deg: [], z_deg: [] },
       steps: { edge_s: [0.005, 0.01, 0.015], count: [0, 1000] },
     },
+    ...given,
+  };
+}
+
+/** Of a flight with 0.01 deg of noise, within what is suggested. */
+export function effect(given: Partial<ToleranceEffect> = {}): ToleranceEffect {
+  return {
+    samples: 6001,
+    needed: true,
+    tolerance_deg: 0.05,
+    suggested_tolerance_deg: 0.05,
+    tolerance_floor_deg: 0.04,
+    within_tolerance: true,
+    deviation_deg: { max: 0.045, rms: 0.017 },
+    cut_off_hz: 5.3,
+    smoothing: "what is faster than 5.3 Hz taken away, up to 0.045 deg",
+    recorded: { rate_deg_s: 92, acceleration_deg_s2: 24_500 },
+    flown: { rate_deg_s: 60, acceleration_deg_s2: 152 },
+    time_s: [0, 1],
+    deviation_at_deg: [0.01, 0.045],
     ...given,
   };
 }
