@@ -87,7 +87,8 @@ def solve(asked: SolveArguments) -> None:
     statement = made["verdict"]["statement"] if planned is not None else ""
     if why is not None:
         rests = f". {statement}" if statement else ""
-        rests += f". {advised[0].upper()}{advised[1:]} (--tolerance)" if advised else ""
+        if advised:
+            rests = f"{rests.rstrip('.')}. {advised[0].upper()}{advised[1:]} (--tolerance)"
         fail(f"{flight} is not feasible on {chosen.name} with {method}: {why}{rests}", NOT_FEASIBLE)
     if "smoothing" in made:
         say(f"{flight}: {made['smoothing']}")
