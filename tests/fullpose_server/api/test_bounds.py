@@ -160,7 +160,7 @@ def test_a_form_s_unknown_and_doubled_fields_are_refused(server: LiveServer, fie
         ("PUT", "/health", "GET"),
         ("GET", "/solve", "POST"),
         ("PATCH", "/trajectories", "GET, POST"),
-        ("POST", "/trajectories/abc", "GET, DELETE"),
+        ("POST", "/trajectories/abc", "GET, PATCH, DELETE"),
     ],
 )
 def test_a_method_that_a_path_does_not_take(server: LiveServer, method: str, path: str, allowed: str) -> None:

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.fullpose_server.api.live_server import FLIGHT, LiveServer
+from tests.support.waiting import until
 
 
 def stored(server: LiveServer) -> int:
@@ -187,6 +188,8 @@ def recorded(rate_hz: int, decimals: int, samples: int = 1001) -> str:
 
 def test_a_flight_is_diagnosed(server: LiveServer) -> None:
     sha256 = server.upload(recorded(500, 2)).json()["sha256"]
+    # Busy is an answer too, while the worker compiles what it needs for the first time.
+    until(lambda: server.http.get(f"/trajectories/{sha256}/diagnosis").is_success, every_s=0.5)
     found = server.http.get(f"/trajectories/{sha256}/diagnosis").json()
     assert found["quantum"]["unit"] == 0.01
     assert found["rig"] is None

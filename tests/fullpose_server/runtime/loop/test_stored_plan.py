@@ -45,6 +45,8 @@ def edit_key(folder: Path, key: str) -> None:
             content[key] = value + 1
         case str() as value:
             content[key] = f"{value}a"
+        case None:
+            content[key] = 0.5
         case _ as digests:
             content[key] = {name: digest[::-1] for name, digest in digests.items()}
     path.write_text(json.dumps(content))
