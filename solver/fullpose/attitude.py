@@ -97,6 +97,15 @@ def quaternion_from_rotation_vector(v: Array) -> Array:
     return np.concatenate([np.cos(half), 0.5 * v * np.sinc(half / np.pi)], axis=-1)
 
 
+def rotation_vector_from_quaternion(q: Array) -> Array:
+    """The rotation vectors (n, 3) [rad] of unit quaternions q (n, 4) of either sign, at most half a turn long."""
+    shorter = np.where(q[..., :1] < 0.0, -q, q)
+    sine = np.linalg.norm(shorter[..., 1:], axis=-1, keepdims=True)
+    moved = sine > 0.0
+    angle = np.arctan2(sine, shorter[..., :1])
+    return np.asarray(2.0 * shorter[..., 1:] * np.where(moved, angle / np.where(moved, sine, 1.0), 1.0))
+
+
 def quaternion_product(a: Array, b: Array) -> Array:
     """a b, Hamilton's product of (w, x, y, z): first b, then a, about fixed axes. (n, 4) or (4,) each."""
     aw, ax, ay, az = np.moveaxis(a, -1, 0)

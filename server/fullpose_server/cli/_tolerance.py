@@ -29,7 +29,7 @@ class Within:
         from fullpose_server.formats.tolerance_report import judged, tolerance_report, without_tolerance
 
         if self.smoothed is None or self.tolerance_deg is None:
-            return report | without_tolerance(self.given.time, self.given.q, self.given_attitude, report)
+            return report | without_tolerance(self.given.time, self.given.q, report)
         return judged(report | tolerance_report(self.smoothed, self.tolerance_deg))
 
     def measured(self, solution: "Solution") -> "Solution":

@@ -5,6 +5,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from fullpose.attitude import dcm_from_quaternion
 from fullpose.errors import InputError
 from fullpose.recorded import Smoothed, effect_of, smooth
 from fullpose.recorded.tube import WIDEST
@@ -32,17 +33,15 @@ def tolerance_report(smoothed: Smoothed, tolerance_deg: float) -> dict[str, Any]
     }
 
 
-def without_tolerance(
-    time: NDArray[Any], q: NDArray[Any], attitude: NDArray[Any], report: dict[str, Any]
-) -> dict[str, Any]:
+def without_tolerance(time: NDArray[Any], q: NDArray[Any], report: dict[str, Any]) -> dict[str, Any]:
     """The keys of a flight that is flown as it is; a suggestion where it is refused or limited for its recording.
 
-    time (n,) [s], q (n, 4), attitude (n, 3, 3), and the report so far.
+    time (n,) [s], q (n, 4), and the report so far.
     """
     none = {"tolerance_deg": None, "deviation_deg": None, "suggested_tolerance_deg": None, "tolerance_floor_deg": None}
     if report["feasible"]:
         return none
-    smoothed = smooth(time, attitude)
+    smoothed = smooth(time, dcm_from_quaternion(q))
     if not smoothed.suggested or not effect_of(time, q, smoothed).matters:
         return none
     return none | _suggestion(smoothed)

@@ -90,7 +90,7 @@ class _Given:
     def reported(self, report: dict[str, Any]) -> dict[str, Any]:
         """The report with what it says of a tolerance; with one, the error is to the flight as it was given."""
         if self.smoothed is None or self.tolerance_deg is None:
-            return report | without_tolerance(self.time, self.q, dcm_from_quaternion(self.q), report)
+            return report | without_tolerance(self.time, self.q, report)
         told = report | tolerance_report(self.smoothed, self.tolerance_deg)
         # Of what is flown from what was given: the deviation of the flight, and the method's own error on top.
         return judged(told | {"max_error_deg": _sum(told["max_error_deg"], told["deviation_deg"]["max"])})

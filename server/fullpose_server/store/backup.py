@@ -20,7 +20,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import asdict, dataclass
-from functools import partial
 from pathlib import Path
 from typing import IO
 
@@ -85,8 +84,8 @@ def make_backup(
     _forget_cut_off(data_dir)
     with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=data_dir) as scratch:
         held = Path(scratch)
-        copied = _copied if isinstance(rows, Path) else partial(_written, data_dir)
-        revision = copied(rows, held / DATABASE)  # type: ignore[arg-type]  # each has its kind
+        copy = held / DATABASE
+        revision = _copied(rows, copy) if isinstance(rows, Path) else _written(data_dir, rows, copy)
         names = [DATABASE, *(name for name in _names(data_dir) if _held(data_dir / name, held / name))]
         manifest = Manifest(time.time(), VERSION, revision, [_measured(name, held / name) for name in names])
         with durable.replacing(target) as draft, tarfile.open(draft, "w") as archive:

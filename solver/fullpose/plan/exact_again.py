@@ -18,8 +18,8 @@ TRIALS = 12  # each leaves out more around the places where the limits do not ho
 SPREAD = 2  # times as much is left out each time
 
 
-def exact_again(problem: Problem, angles: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """(the path (n, 4) [rad], exact wherever the limits let it, and which samples (n,) are not) of one inside them."""
+def exact_again(problem: Problem, angles: Array) -> tuple[Array, Array]:
+    """(the path (n, 4), exact wherever the limits let it, and its attitude errors (n,)) [rad] of one inside them."""
     time, rig = problem.time, problem.rig
     error, _ = attitude_errors(payload_attitudes(rig, angles), problem.attitude)
     exact = angles.copy()
@@ -35,11 +35,11 @@ def exact_again(problem: Problem, angles: Array) -> tuple[Array, NDArray[np.bool
         broken = np.flatnonzero((violation.max(axis=1) > MET) & (np.convolve(weight, np.ones(3), "same") > 0.0))
         if not broken.size:
             after, _ = attitude_errors(payload_attitudes(rig, path), problem.attitude)
-            return path, after > EXACT_ERROR
+            return path, after
         for k in broken:
             near[np.searchsorted(time, time[k] - aside) : np.searchsorted(time, time[k] + aside, side="right")] = False
         aside *= SPREAD
-    return angles.copy(), error > EXACT_ERROR
+    return angles.copy(), error
 
 
 def _weights(time: Array, near: NDArray[np.bool_]) -> Array:

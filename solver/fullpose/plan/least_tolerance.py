@@ -61,9 +61,8 @@ def least_tolerance(problem: Problem, paths: Sequence[Array], progress: Progress
         angles = _in_pieces(problem, paths, heard)
     if angles is None or largest_violation(time, angles, rig_limits(problem.rig)).share > MET:
         angles = _following(problem, paths)
-    path, missed = exact_again(problem, angles)
-    error, _ = attitude_errors(payload_attitudes(problem.rig, path), problem.attitude)
-    limited = active_limits(time, problem.attitude, path, problem.rig, missed)
+    path, error = exact_again(problem, angles)
+    limited = active_limits(time, problem.attitude, path, problem.rig, error > EXACT_ERROR)
     return LeastTolerance(path, limited, float(error.max()))
 
 

@@ -8,7 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._typing import Array
-from fullpose.attitude import quaternion_from_rotation_vector, quaternion_product
+from fullpose.attitude import (
+    quaternion_from_rotation_vector,
+    quaternion_product,
+    rotation_vector_from_quaternion,
+)
 from fullpose.recorded.smoothing_spline import KNOTS, Smooth, gauss_points, spline_at, uniform_knots
 from fullpose.recorded.spline_kernels import DEGREE, Knots, Tube
 from fullpose.recorded.tube_curve import Programme, brought_in, nearest_in_tube, projected
@@ -94,11 +98,7 @@ def geodesic(a: Array, b: Array) -> Array:
 
 def rotation_vectors(a: Array, b: Array) -> Array:
     """The rotation (n, 3) [rad] about the reference axes from b to a, unit quaternions (n, 4): log(a b*)."""
-    d = quaternion_product(a, b * np.array([1.0, -1.0, -1.0, -1.0]))
-    d = np.where(d[:, :1] < 0.0, -d, d)
-    sine = np.linalg.norm(d[:, 1:], axis=1, keepdims=True)
-    moved = sine > 0.0
-    return np.asarray(2.0 * d[:, 1:] * np.where(moved, np.arctan2(sine, d[:, :1]) / np.where(moved, sine, 1.0), 1.0))
+    return rotation_vector_from_quaternion(quaternion_product(a, b * np.array([1.0, -1.0, -1.0, -1.0])))
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from fullpose._typing import Array, Counts, Integers
 from fullpose.charts import TURN
 from fullpose.kinematics import jacobian, payload_attitude, rotation_error
 from fullpose.limits import ACCELERATION, MAX, RATE, Box, empty_box, limit_box
+from fullpose.trajectory.beam import cheapest
 
 CELLS = 1 << 16
 POSE_CELL = math.radians(12.0)  # [rad] width of a cell
@@ -219,21 +220,6 @@ def rooted(search: Search, stages: AttitudeStages, poses: Array, rates: Array, w
 
 
 @kernel
-def keep_cheapest(reached: Reached, count: int, beam: int, number: int, tree: Tree) -> int:
-    """tree <- the cheapest `beam` of the states found for a stage; returns how many."""
-    order = np.argsort(reached.cost[:count])
-    width = min(count, beam)
-    for b in range(width):
-        slot = order[b]
-        for i in range(4):
-            tree.pose[number, b, i] = reached.pose[slot, i]
-            tree.rate[b, i] = reached.rate[slot, i]
-        tree.cost[b] = reached.cost[slot]
-        tree.parent[number, b] = reached.parent[slot]
-    return width
-
-
-@kernel
 def attitude_search(
     search: Search, stages: AttitudeStages, poses: Array, rates: Array, beam: int, paths: Array
 ) -> int:  # fmt: skip
@@ -262,7 +248,7 @@ def attitude_search(
         filled = 0
         for b in range(count):
             filled = branch(search, stage, tree, b, room, reached, filled)
-        count = keep_cheapest(reached, filled, beam, number, tree)
+        count = cheapest(reached, filled, beam, number, tree).size
     return different(tree, count, paths)
 
 

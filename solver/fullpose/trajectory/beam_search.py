@@ -22,6 +22,7 @@ from fullpose.charts import TURN, project
 from fullpose.kinematics import self_motion
 from fullpose.limits import WEIGHT, Box, empty_box, limit_box, tolerances
 from fullpose.step import clamp, null_interval
+from fullpose.trajectory.beam import cheapest
 from fullpose.trajectory.stage_cost import Costs, Stage, Task, pose_cost, step_cost
 
 PLACES = 90  # cells a turn of the place along the curve
@@ -175,17 +176,10 @@ def expand(task: Task, stage: Stage, kept: Kept, state: int, room_for: Scratch, 
 @kernel
 def keep_cheapest(found: Found, count: int, beam: int, stage: int, kept: Kept) -> int:
     """kept <- the cheapest `beam` of the states found for a stage; returns how many."""
-    order = np.argsort(found.cost[:count])
-    width = min(count, beam)
-    for b in range(width):
-        slot = order[b]
-        for i in range(4):
-            kept.pose[stage, b, i] = found.pose[slot, i]
-            kept.rate[b, i] = found.rate[slot, i]
-        kept.cost[b] = found.cost[slot]
-        kept.parent[stage, b] = found.parent[slot]
-        kept.violated[stage, b] = found.violated[slot]
-    return width
+    slots = cheapest(found, count, beam, stage, kept)
+    for b in range(slots.size):
+        kept.violated[stage, b] = found.violated[slots[b]]
+    return int(slots.size)
 
 
 @kernel

@@ -16,6 +16,7 @@ from fullpose_server.runtime.recording import run_index
 from fullpose_server.runtime.recording.mcap_reader import is_complete, read_samples
 from fullpose_server.runtime.recording.mcap_writer import RunRecord
 from fullpose_server.runtime.recording.run_index import RunFiles
+from fullpose_server.runtime.recording.run_summary import RunSummary
 from tests.fullpose_server.api.live_server import LiveServer, Operator, live_server
 from tests.fullpose_server.api.test_stream import received
 from tests.support.sockets import connect
@@ -192,14 +193,36 @@ def test_a_run_that_is_being_written_is_not_read_through_and_one_that_was_cut_of
     assert runs.get(path.stem).complete
 
 
-def test_a_list_reads_no_more_records_than_it_has_time_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    paths = [tmp_path / f"20261122T03040{k}-vertical-4-00000{k}.mcap" for k in range(3)]
+def three_records(folder: Path) -> list[Path]:
+    """Of eight rows each, oldest first."""
+    paths = [folder / f"20261122T03040{k}-vertical-4-00000{k}.mcap" for k in range(3)]
     for path in paths:
         record = RunRecord(path, {"run_id": path.stem, "who": "ann", "plan": {}}, 10**18, 0)
         rows = np.zeros(8, SAMPLE)
         rows["seq"] = np.arange(1, 9)
         record.add_samples(rows)
         record.finish()
+    return paths
+
+
+def test_what_is_read_ahead_is_looked_at_no_more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    three_records(tmp_path)
+    runs, looked_at = RunFiles(tmp_path), []
+    kept_summary = run_index.kept_summary
+
+    def counted(path: Path) -> RunSummary | None:
+        looked_at.append(path)
+        return kept_summary(path)
+
+    runs.read_ahead()
+    runs.read_ahead()
+    monkeypatch.setattr(run_index, "kept_summary", counted)
+    runs.read_ahead()
+    assert looked_at == []
+
+
+def test_a_list_reads_no_more_records_than_it_has_time_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    paths = three_records(tmp_path)
     runs = RunFiles(tmp_path)
     monkeypatch.setattr(run_index, "READING_S", 0.0)
     assert [(run.who, run.samples) for run in runs.all()] == [("ann", None)] * 3

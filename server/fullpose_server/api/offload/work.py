@@ -39,7 +39,16 @@ class Work(StrEnum):
 
 
 @dataclass(frozen=True)
-class ReadRequest:
+class Request:
+    """What the process is told of one piece of work."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Values for `json`."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class ReadRequest(Request):
     """An upload: where it is, what it is called, where its arrays go, and how many of them it may have."""
 
     source: str
@@ -49,13 +58,9 @@ class ReadRequest:
     file: str = ""
     convention: str = Convention.NUE
 
-    def to_json(self) -> dict[str, Any]:
-        """Values for `json`."""
-        return asdict(self)
-
 
 @dataclass(frozen=True)
-class SolveRequest:
+class SolveRequest(Request):
     """A batch: where its body is, where the answer goes, where the rigs are, and how many samples it may have."""
 
     body: str
@@ -63,26 +68,18 @@ class SolveRequest:
     rigs: str
     samples: int
 
-    def to_json(self) -> dict[str, Any]:
-        """Values for `json`."""
-        return asdict(self)
-
 
 @dataclass(frozen=True)
-class ToleranceRequest:
+class ToleranceRequest(Request):
     """What a tolerance does to a flight: the folder of its arrays, the tolerance or None for what is suggested."""
 
     folder: str
     tolerance_deg: float | None
     points: int
 
-    def to_json(self) -> dict[str, Any]:
-        """Values for `json`."""
-        return asdict(self)
-
 
 @dataclass(frozen=True)
-class DiagnoseRequest:
+class DiagnoseRequest(Request):
     """A stored flight: its folder and samples, where the answer goes, where the rigs are, and which one, if any."""
 
     folder: str
@@ -90,10 +87,6 @@ class DiagnoseRequest:
     answer: str
     rigs: str
     rig: str | None
-
-    def to_json(self) -> dict[str, Any]:
-        """Values for `json`."""
-        return asdict(self)
 
 
 def _read_file(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:

@@ -1,23 +1,28 @@
 """Recorded runs as the outside sees them: a summary of each file, kept beside it."""
 
 import contextlib
-import json
 import os
 import threading
 import time
 from bisect import bisect_left
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 from fullpose_server.errors import FileError, NotFoundError, ServerError
 from fullpose_server.formats import durable
 from fullpose_server.formats.labels import NO_LABELS
-from fullpose_server.formats.output_file import write_text
 from fullpose_server.runtime.recording.mcap_reader import RecordError, is_complete, run_of
 from fullpose_server.runtime.recording.record_names import RECORD, RecordNames, is_run, rig_of
 from fullpose_server.runtime.recording.run_labels import LABELS, RunLabels
 from fullpose_server.runtime.recording.run_search import RunSearch, Sought
-from fullpose_server.runtime.recording.run_summary import RunSummary, brief, summarise, unreadable
+from fullpose_server.runtime.recording.run_summary import (
+    RunSummary,
+    brief,
+    keep_summary,
+    kept_summary,
+    summarise,
+    unreadable,
+)
 
 PIN = ".pin"  # of the mark beside a record that is to stay
 READING_S = 0.5  # that a list may take over records that have no summary yet: of the others it tells what they are
@@ -40,6 +45,7 @@ class RunFiles:
         self._names = RecordNames(folder)
         self._search = RunSearch(folder, self.labels)
         self._closing = threading.Event()
+        self._ahead: set[str] = set()  # the runs that `read_ahead` has seen a summary of
 
     def close(self) -> None:
         """Read ahead no more."""
@@ -50,10 +56,16 @@ class RunFiles:
 
         The thread that calls it rests as long as it works: the processor is for others.
         """
-        for run in reversed(self._names.all()):
+        runs = self._names.all()
+        self._ahead.intersection_update(runs)
+        for run in reversed(runs):
+            if run in self._ahead:
+                continue
             path, began = self.folder / f"{run}{RECORD}", time.monotonic()
             with contextlib.suppress(RecordError, OSError):  # said by whoever lists it
-                if _kept(path) is None:
+                if kept_summary(path) is not None:
+                    self._ahead.add(run)
+                else:
                     self._summary(path)
                     self._closing.wait(time.monotonic() - began)
             if self._closing.is_set():
@@ -86,7 +98,7 @@ class RunFiles:
             with contextlib.suppress(FileNotFoundError):
                 try:
                     reading = time.monotonic() - began < READING_S
-                    found.append(self._summary(path) if reading else _kept(path) or brief(path))
+                    found.append(self._summary(path) if reading else kept_summary(path) or brief(path))
                 except (RecordError, OSError) as error:
                     if not _is_fresh(path):
                         found.append(unreadable(path, error))
@@ -165,7 +177,7 @@ class RunFiles:
 
     def _summary(self, path: Path) -> RunSummary:
         """Of the file: read whole once, when nobody writes to it any more, and kept beside it."""
-        kept = _kept(path)
+        kept = kept_summary(path)
         if kept is not None:
             return kept
         size = path.stat().st_size
@@ -174,17 +186,8 @@ class RunFiles:
             return brief(path)
         made = replace(summarise(path), complete=complete)
         if made.bytes == size:
-            _keep(made, path.with_suffix(".json"))
+            keep_summary(path, made)
         return made
-
-
-def _kept(path: Path) -> RunSummary | None:
-    """The summary beside the record; None where there is none of it as it is, or one of another version."""
-    try:
-        summary = RunSummary(**json.loads(path.with_suffix(".json").read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):
-        return None
-    return summary if summary.bytes == path.stat().st_size else None
 
 
 def is_being_written(path: Path) -> bool:
@@ -194,8 +197,3 @@ def is_being_written(path: Path) -> bool:
 
 def _is_fresh(path: Path) -> bool:
     return abs(time.time() - path.stat().st_mtime) < _WRITTEN_S
-
-
-def _keep(summary: RunSummary, kept: Path) -> None:
-    with contextlib.suppress(OSError):  # a full disk, say: the summary is as true, and made again next time
-        write_text(kept, json.dumps(asdict(summary)))

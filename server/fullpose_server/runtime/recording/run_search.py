@@ -1,16 +1,16 @@
 """Runs that are searched for: by what their summaries say, by their labels, and by plans that somebody else found."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from fullpose_server.formats.labels import search_text
+from fullpose_server.runtime.recording.record_names import RECORD
 from fullpose_server.runtime.recording.run_labels import RunLabels
+from fullpose_server.runtime.recording.run_summary import kept_summary
 
 # Each part of what is searched for, with the plans that have it.
 Sought = tuple[tuple[str, frozenset[str]], ...]
-_SAID = ("id", "rig", "who", "end", "incident", "plan_id")
 
 
 class _Text(NamedTuple):
@@ -44,12 +44,13 @@ class RunSearch:
 
     def _read(self, run: str) -> _Text:
         try:
-            told: Any = json.loads((self._folder / f"{run}.json").read_text(encoding="utf-8"))
-            said = [str(told[name]) for name in _SAID if told[name] is not None]
-            found = _Text("\n".join(said).casefold(), told["plan_id"])
-            final = bool(told["complete"])
-        except (OSError, ValueError, TypeError, KeyError):  # not there yet, or of another version
+            summary = kept_summary(self._folder / f"{run}{RECORD}")
+        except OSError:  # the record is gone
+            summary = None
+        if summary is None:  # not there yet, or of another version
             return _Text(run.casefold(), None)
-        if final:
+        said = (summary.id, summary.rig, summary.who, summary.end, summary.incident, summary.plan_id)
+        found = _Text("\n".join(each for each in said if each is not None).casefold(), summary.plan_id)
+        if summary.complete:
             self._texts[run] = found
         return found

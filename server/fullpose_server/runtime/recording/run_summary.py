@@ -1,12 +1,14 @@
 """What a record says, in a few words: made of the whole of it once, or of its name and beginning."""
 
+import contextlib
 import json
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fullpose_server.formats.output_file import write_text
 from fullpose_server.runtime.contract.telemetry import Flag, Samples
 from fullpose_server.runtime.recording.mcap_reader import RecordError, read_record, run_of
 from fullpose_server.runtime.recording.record_names import began_at, rig_of
@@ -35,6 +37,21 @@ class RunSummary:
     max_solve_error_deg: float | None
     max_tracking_error_deg: float | None
     max_lateness_us: float | None
+
+
+def kept_summary(path: Path) -> RunSummary | None:
+    """The summary beside the record; None where there is none of it as it is, or one of another version."""
+    try:
+        summary = RunSummary(**json.loads(path.with_suffix(".json").read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError):
+        return None
+    return summary if summary.bytes == path.stat().st_size else None
+
+
+def keep_summary(path: Path, summary: RunSummary) -> None:
+    """Put the summary beside the record."""
+    with contextlib.suppress(OSError):  # a full disk, say: the summary is as true, and made again next time
+        write_text(path.with_suffix(".json"), json.dumps(asdict(summary)))
 
 
 def named(path: Path) -> RunSummary:
