@@ -1,11 +1,11 @@
 """Stop and E-stop of a moving rig while the server is attacked, beside a bare uvicorn's answer in the same run.
 
-    python -m bench.realtime.stop_under_attack [--times 100] [--attacks json,bombs] [--disk FOLDER] [--json FILE]
+    python -m bench.realtime.stop_under_attack [--times 100] [--attacks json,bombs] [--ways HTTP,channel] [--json FILE]
 
 Each stop is asked over HTTP, the connection included, and over the stop channel. Two clocks start with the request: one
 ends when the loop has written the first braking command (it notes the time in shared memory), one with the answer. The
 attack `full` fills the disk anew before every move, since a rig is not armed on a full one; it needs a data folder on a
-file system of its own, given as `--disk`, or as root the bench mounts one.
+file system of its own, given as `--disk FOLDER`, or as root the bench mounts one.
 A stop that is refused, or not answered within ten seconds, is counted as lost. A normal viewer's largest gaps between
 frames, the server's memory and what the attackers were answered are told too.
 """
@@ -20,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +39,7 @@ from fullpose_server.gate.system import SERVER, before_others
 from fullpose_server.runtime.supervisor.rig_client import RigHost
 
 FILES = 1024
+WAYS = ("HTTP", "channel")
 Asking = Callable[[str], None]  # to stop or to E-stop
 TRIPPED = ("faulted", "ready", "disconnected")
 FULL = "full"  # the attack that is no client
@@ -130,7 +131,7 @@ def filled(folder: Path) -> Iterator[None]:
         filler.unlink(missing_ok=True)
 
 
-async def measure(attack: str, times: int, root: Path) -> dict[str, Any]:
+async def measure(attack: str, times: int, root: Path, over: Sequence[str] = WAYS) -> dict[str, Any]:
     """One attack's rows."""
     rig = builtin_rigs()[RIG]
     plan = write_swing(Path(tempfile.mkdtemp()) / "plan", rig, 1.0)
@@ -141,7 +142,8 @@ async def measure(attack: str, times: int, root: Path) -> dict[str, Any]:
         await asyncio.sleep(1.0)
         gaps.found.clear()
         with attacked(attack, port, root / "data"):
-            for way, over in (("HTTP", ways.http), ("channel", ways.channel)):
+            for way in over:
+                ask = {"HTTP": ways.http, "channel": ways.channel}[way]
                 for word in ("stop", "estop"):
                     stops = found[f"{word} {way}"] = Stops()
                     operator = Operator(host)
@@ -150,7 +152,7 @@ async def measure(attack: str, times: int, root: Path) -> dict[str, Any]:
                         if host.snapshot().state != "armed":
                             await operator.arm(plan_folder=str(plan))
                         with filled(root / "data") if attack == FULL else contextlib.nullcontext():
-                            await stops.once(host, operator, over, word, (-1.0) ** k)
+                            await stops.once(host, operator, ask, word, (-1.0) ** k)
                         stops.bare.append(await asyncio.to_thread(timed, ways.bare))
                     told(f"{attack}: {word} {way}", stops)
         memory.close()
@@ -222,6 +224,7 @@ def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--times", type=int, default=100)
     arguments.add_argument("--attacks", default=",".join(["none", *NAMES, FULL]))
+    arguments.add_argument("--ways", default=",".join(WAYS))
     arguments.add_argument("--disk", type=Path, default=None)
     arguments.add_argument("--json", type=Path, default=None)
     given = arguments.parse_args()
@@ -232,7 +235,7 @@ def main() -> None:
     for attack in given.attacks.split(","):
         folder = own_disk(given.disk) if attack == FULL else tempfile.TemporaryDirectory()
         with folder as root:
-            results[attack] = asyncio.run(measure(attack, given.times, Path(root)))
+            results[attack] = asyncio.run(measure(attack, given.times, Path(root), given.ways.split(",")))
         if given.json is not None:
             told_of = {"machine": machine(), "load": load, "bounds": BOUNDS, "attacks": results}
             given.json.write_text(json.dumps(told_of, indent=1), encoding="utf-8")

@@ -7,6 +7,7 @@ import base64
 import http.client
 import json
 import os
+import select
 import socket
 from typing import Any
 
@@ -44,6 +45,13 @@ class Channel:
             elif kind == _TEXT:
                 answer: dict[str, Any] = json.loads(payload)
                 return answer
+
+    def listen(self) -> None:
+        """Answer the pings that have come, as a browser does by itself: a channel that does not is closed."""
+        while self._data or select.select([self._socket], [], [], 0.0)[0]:
+            kind, payload = self._frame()
+            if kind == _PING:
+                self._send(_PONG, payload)
 
     def close(self) -> None:
         """No more."""
@@ -90,7 +98,8 @@ class Ways:
         assert answer["done"]["unknown"] is None, answer
 
     def bare(self) -> None:
-        """A bare uvicorn that says ok."""
+        """A bare uvicorn that says ok; asked after every stop, so the channel is listened to here."""
+        self._channel.listen()
         link = http.client.HTTPConnection("127.0.0.1", self._bare, timeout=60)
         link.request("POST", "/", b"")
         link.getresponse().read()
