@@ -98,7 +98,8 @@ def test_flight_from_upload_to_replay(pages: Pages, shots: Path) -> None:
     row = flights.first
     expect(row).to_be_visible(timeout=SOON_MS)
     page.screenshot(path=shots / "runs-flown.png")
-    address = row.get_by_role("link", name="CSV").get_attribute("href")
+    row.get_by_role("button", name="Download").click()
+    address = page.get_by_role("link", name="CSV .csv").get_attribute("href")
     assert address is not None
     exported = page.request.get(address)
     assert exported.ok

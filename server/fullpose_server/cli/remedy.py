@@ -11,7 +11,7 @@ from fullpose.vocabulary import RemedyKind
 from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, command
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail
 from fullpose_server.cli._flight import read_flight
-from fullpose_server.cli._outputs import check_outputs
+from fullpose_server.cli._outputs import OUT_KINDS, check_outputs
 from fullpose_server.cli._progress import progress_bar
 
 
@@ -29,7 +29,7 @@ class RemedyArguments:
     flight: FlightFile
     rig: RigName
     kind: Annotated[str, typer.Option(help=f"{', '.join(RemedyKind)}.")]
-    out: Annotated[Path, typer.Option(help="Angles of the changed flight; Parquet where it ends in .parquet.")]
+    out: Annotated[Path, typer.Option(help=f"Angles of the changed flight; {OUT_KINDS}.")]
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON, with what was changed.")] = None
     frame: Annotated[str | None, typer.Option(help="relax: of this frame alone.")] = None
     limit: Annotated[str | None, typer.Option(help="relax: of position, rate or acceleration alone.")] = None
@@ -42,9 +42,10 @@ def remedy(asked: RemedyArguments) -> None:
     from fullpose.attitude import dcm_from_quaternion
     from fullpose.verify import verify
     from fullpose_server.errors import NoRemedyError
-    from fullpose_server.formats.output_file import write_solution, write_text
+    from fullpose_server.formats.output_file import write_text
     from fullpose_server.formats.report import make_report, margins_report, verdict_report
     from fullpose_server.formats.rig_file import find_rig
+    from fullpose_server.formats.solution_file import write_solution
     from fullpose_server.planning.remedy import find_remedy
     from fullpose_server.planning.remedy_request import RemedyRequest
 

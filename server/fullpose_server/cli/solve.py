@@ -11,7 +11,7 @@ import typer
 from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, ToleranceDeg, command
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail, say
 from fullpose_server.cli._flight import read_flight
-from fullpose_server.cli._outputs import check_outputs
+from fullpose_server.cli._outputs import OUT_KINDS, check_outputs
 from fullpose_server.cli._progress import progress_bar
 from fullpose_server.cli._tolerance import Within, within
 
@@ -37,7 +37,7 @@ class SolveArguments:
 
     flight: FlightFile
     rig: RigName
-    out: Annotated[Path, typer.Option(help="Angles, one row an input row; Parquet where it ends in .parquet.")]
+    out: Annotated[Path, typer.Option(help=f"Angles, one row an input row; {OUT_KINDS}.")]
     method: Annotated[str, typer.Option(help=f"{METHODS}.")] = "plan"
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None
     start: StartPose = None
@@ -53,9 +53,10 @@ def solve(asked: SolveArguments) -> None:
     """Solve, write OUT and what else was asked for. Exit 2: bad input, OUT untouched. Exit 3: not feasible."""
     from fullpose.attitude import dcm_from_quaternion
     from fullpose.verify import verify
-    from fullpose_server.formats.output_file import write_solution, write_text
+    from fullpose_server.formats.output_file import write_text
     from fullpose_server.formats.report import make_report, verdict_report, why_infeasible, why_not_exact
     from fullpose_server.formats.rig_file import find_rig
+    from fullpose_server.formats.solution_file import write_solution
     from fullpose_server.formats.tolerance_report import advice
 
     flight, method = asked.flight, asked.method

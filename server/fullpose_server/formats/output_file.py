@@ -1,20 +1,13 @@
-"""Writing the solved angles: CSV at 17 significant digits, or Parquet. The file appears whole or not at all."""
+"""Files that are written: whole or not at all, and never over an input or another output."""
 
 import os
 import stat
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
-
-from fullpose.solution import Solution
 from fullpose_server.errors import FileError
 from fullpose_server.formats import durable
-
-COLUMNS = ("time_s", "base_deg", "outer_deg", "middle_deg", "inner_deg", "error_deg", "limited")
-_ROW = "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d\n"
-_CHUNK = 4096
 
 
 @contextmanager
@@ -81,41 +74,3 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file, whole or not at all."""
     with replacing(path) as draft:
         draft.write_text(text, encoding="utf-8")
-
-
-def write_solution(path: Path, solution: Solution, progress: Callable[[int, int], None] | None = None) -> None:
-    """Write one row a sample; Parquet where the name ends in .parquet, else CSV."""
-    with replacing(path) as draft:
-        if path.suffix == ".parquet":
-            _write_parquet(draft, solution)
-        else:
-            _write_csv(draft, solution, progress)
-
-
-def _write_csv(path: Path, solution: Solution, progress: Callable[[int, int], None] | None) -> None:
-    n = solution.time.size
-    with path.open("w", encoding="ascii", newline="") as stream:
-        stream.write(",".join(COLUMNS) + "\n")
-        for begin in range(0, n, _CHUNK):
-            part = slice(begin, min(begin + _CHUNK, n))
-            rows = np.column_stack(
-                [
-                    solution.time[part],
-                    np.rad2deg(solution.angles[part]),
-                    np.rad2deg(solution.error[part]),
-                    solution.limited[part] > 0,
-                ]
-            )
-            stream.write(_ROW * len(rows) % tuple(rows.ravel().tolist()))
-            if progress is not None:
-                progress(part.stop, n)
-
-
-def _write_parquet(path: Path, solution: Solution) -> None:
-    import pyarrow as pa  # half the start-up of a solve that writes CSV
-    import pyarrow.parquet as pq
-
-    angles = np.rad2deg(solution.angles)
-    columns = [solution.time, *angles.T, np.rad2deg(solution.error), (solution.limited > 0).astype(np.int8)]
-    table = pa.table(dict(zip(COLUMNS, [pa.array(np.ascontiguousarray(column)) for column in columns], strict=True)))
-    pq.write_table(table, path)

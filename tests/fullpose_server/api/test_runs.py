@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from mcap.reader import make_reader
 
+from fullpose_server.formats.exporters.registry import ExportKind
 from fullpose_server.runtime.contract.telemetry import SAMPLE
 from fullpose_server.runtime.recording import run_index
 from fullpose_server.runtime.recording.mcap_reader import is_complete, read_samples
@@ -57,7 +58,7 @@ def test_what_is_no_run(server: LiveServer, run: str) -> None:
     broken = server.settings.data_dir / "runs" / "broken.mcap"
     broken.write_bytes(b"not a record")
     assert server.http.get("/runs/broken").status_code == 422
-    for kind in ("csv", "parquet", "mcap"):
+    for kind in ExportKind:
         assert server.http.get("/runs/broken/export", params={"format": kind}).status_code == 422
     # It may be a run whose first bytes are on their way, until it has not grown for a while.
     assert [line["id"] for line in server.http.get("/runs").json()] == [run]

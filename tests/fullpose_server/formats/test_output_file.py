@@ -15,13 +15,12 @@ from fullpose.solution import Solution
 from fullpose.solve import solve
 from fullpose_server.errors import FileError
 from fullpose_server.formats.output_file import (
-    COLUMNS,
     check_apart,
     check_writable,
     replacing,
-    write_solution,
     write_text,
 )
+from fullpose_server.formats.solution_file import COLUMNS, write_solution
 
 
 def solution(n: int = 5000) -> Solution:

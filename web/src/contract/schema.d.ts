@@ -129,6 +129,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/exports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Exports
+         * @description The kinds of file that plans and runs are exported as, and which of them this server has the library for.
+         */
+        get: operations["list_exports_api_v1_exports_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/health": {
         parameters: {
             query?: never;
@@ -359,6 +379,26 @@ export interface paths {
          * @description Put tags and notes to a plan; its hash, and what it flies, stay as they are.
          */
         patch: operations["label_plan_api_v1_plans__plan__patch"];
+        trace?: never;
+    };
+    "/api/v1/plans/{plan}/export": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Export Plan
+         * @description The whole plan as a file: what is flown at the rig's rate, leads included, every sample.
+         */
+        get: operations["export_plan_api_v1_plans__plan__export_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
         trace?: never;
     };
     "/api/v1/plans/{plan}/remedies": {
@@ -1510,6 +1550,35 @@ export interface components {
              */
             command: "estop";
             lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * ExportKind
+         * @description The kinds, each by the ending of its files.
+         * @enum {string}
+         */
+        ExportKind: "csv" | "parquet" | "mcap" | "mat" | "tdms" | "mf4" | "f64";
+        /**
+         * ExportKindOut
+         * @description A kind of file.
+         */
+        ExportKindOut: {
+            /**
+             * Available
+             * @description False: this server is without the library that it takes
+             */
+            available: boolean;
+            /** @description What `export` is asked for, and the ending of the file */
+            format: components["schemas"]["ExportKind"];
+            /**
+             * Install
+             * @description What to type on the server for that library; null: it needs none
+             */
+            install: string | null;
+            /**
+             * Label
+             * @description What people call it
+             */
+            label: string;
         };
         /**
          * FailureOut
@@ -4965,6 +5034,62 @@ export interface operations {
             };
         };
     };
+    list_exports_api_v1_exports_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ExportKindOut"][];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     health_api_v1_health_get: {
         parameters: {
             query?: never;
@@ -6134,6 +6259,98 @@ export interface operations {
             };
             /** @description No room on the disk */
             507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    export_plan_api_v1_plans__plan__export_get: {
+        parameters: {
+            query?: {
+                format?: components["schemas"]["ExportKind"];
+            };
+            header?: never;
+            path: {
+                plan: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                    "application/vnd.apache.parquet": unknown;
+                    "application/x-matlab-data": unknown;
+                    "application/x-mdf4": unknown;
+                    "application/x-tdms": unknown;
+                    "text/csv": unknown;
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The plan is not done */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -7717,7 +7934,7 @@ export interface operations {
     export_run_api_v1_runs__run__export_get: {
         parameters: {
             query?: {
-                format?: "csv" | "parquet" | "mcap";
+                format?: components["schemas"]["ExportKind"];
             };
             header?: never;
             path: {
@@ -7735,6 +7952,9 @@ export interface operations {
                 content: {
                     "application/octet-stream": unknown;
                     "application/vnd.apache.parquet": unknown;
+                    "application/x-matlab-data": unknown;
+                    "application/x-mdf4": unknown;
+                    "application/x-tdms": unknown;
                     "text/csv": unknown;
                 };
             };

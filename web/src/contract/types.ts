@@ -16,9 +16,9 @@ export type ArgsOf<Name extends CommandName> = Given<Extract<CommandBody, { comm
 export type CommandDone = Schemas["CommandOut"];
 export type Comparison = Schemas["ComparisonOut"];
 export type Convention = NonNullable<FlightForm["convention"]>;
-export type ExportFormat = NonNullable<
-  NonNullable<paths["/api/v1/runs/{run}/export"]["get"]["parameters"]["query"]>["format"]
->;
+/** A kind of file that plans and runs are downloaded as. */
+export type ExportKind = Schemas["ExportKindOut"];
+export type ExportFormat = ExportKind["format"];
 export type Diagnosis = Schemas["DiagnosisOut"];
 /** A flight's file as a form. */
 export type FlightForm = paths["/api/v1/trajectories"]["post"]["requestBody"]["content"]["multipart/form-data"];

@@ -64,6 +64,7 @@ export const api = {
     request("post", "/api/v1/plans", {}, { ...READ, body: { trajectory, rig, method, options: {}, tolerance_deg } }),
   createRemedy: (plan: string, kind: RemedyKind) =>
     request("post", "/api/v1/plans/{plan}/remedies", { plan }, { ...READ, body: { kind } }),
+  planExportUrl: (plan: string, format: ExportFormat) => pathTo("/api/v1/plans/{plan}/export", { plan }, { format }),
   cancelPlan: (plan: string) => request("delete", "/api/v1/plans/{plan}", { plan }, READ),
 
   comparisons: (before: string | null = null) => page("/api/v1/compare", {}, {}, before, READ.withinMs),
@@ -94,6 +95,8 @@ export const api = {
   deleteRun: (run: string) => request("delete", "/api/v1/runs/{run}", { run }, READ),
   pinRun: (run: string) => request("put", "/api/v1/runs/{run}/pin", { run }, READ),
   unpinRun: (run: string) => request("delete", "/api/v1/runs/{run}/pin", { run }, READ),
+  /** The kinds of file that plans and runs are downloaded as. */
+  exports: () => request("get", "/api/v1/exports", {}, READ),
   evidenceUrl: (run: string) => pathTo("/api/v1/runs/{run}/evidence", { run }),
   exportUrl: (run: string, format: ExportFormat) => pathTo("/api/v1/runs/{run}/export", { run }, { format }),
 

@@ -1,11 +1,11 @@
-"""Recorded runs: list, detail, export."""
+"""Recorded runs: list, detail, evidence."""
 
 import asyncio
 from datetime import UTC, datetime
-from typing import Annotated, Any, Literal
+from typing import Any
 from uuid import uuid4
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Request
 from pydantic import TypeAdapter
 from starlette.background import BackgroundTask
 from starlette.responses import FileResponse, Response
@@ -19,8 +19,6 @@ from fullpose_server.api.problems import ApiError
 from fullpose_server.api.schemas.labels import LabelsIn
 from fullpose_server.api.schemas.records import RunOut
 from fullpose_server.formats.labels import Wanted
-from fullpose_server.runtime.recording.export import write_export
-from fullpose_server.runtime.recording.mcap_reader import is_complete
 from fullpose_server.runtime.recording.run_index import RunInUseError
 from fullpose_server.runtime.recording.run_search import Sought
 from fullpose_server.runtime.recording.run_summary import RunSummary
@@ -29,10 +27,8 @@ from fullpose_server.store.keyset import Key
 
 router = APIRouter(prefix="/runs", tags=["runs"])
 _LIST = TypeAdapter(list[RunOut])
-Format = Literal["csv", "parquet", "mcap"]
 _IN_USE: dict[int | str, dict[str, Any]] = {409: {"description": "It is pinned, or being written"}}
 _ENDS = {str(end): end for end in RunEnd}
-MEDIA_TYPES = {"csv": "text/csv", "parquet": "application/vnd.apache.parquet", "mcap": "application/octet-stream"}
 
 
 @router.get("", response_model=list[RunOut], responses=LINKED)
@@ -70,29 +66,6 @@ def label_run(run: str, body: LabelsIn, services: ServicesDep) -> RunOut:
 def get_run(run: str, services: ServicesDep) -> RunOut:
     """One run."""
     return _out(services, services.runs.get(run))
-
-
-@router.get(
-    "/{run}/export",
-    response_class=FileResponse,
-    responses={200: {"content": {kind: {} for kind in MEDIA_TYPES.values()}}},
-)
-async def export_run(
-    run: str, services: ServicesDep, kind: Annotated[Format, Query(alias="format")] = "csv"
-) -> FileResponse:
-    """The whole run as a file: every sample of the record; as MCAP always with an index, repaired where need be."""
-    record = services.runs.path(run)
-    services.disk.check()
-    if kind == "mcap" and await asyncio.to_thread(is_complete, record):
-        return FileResponse(record, media_type=MEDIA_TYPES[kind], filename=record.name)
-    draft = services.uploads / uuid4().hex
-    try:
-        await asyncio.to_thread(write_export, record, draft, kind)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
-    done = BackgroundTask(draft.unlink, missing_ok=True)
-    return FileResponse(draft, media_type=MEDIA_TYPES[kind], filename=f"{run}.{kind}", background=done)
 
 
 @router.get(
