@@ -39,6 +39,6 @@ def _rows(time: Array, position: Array, rate: Array, acceleration: Array) -> Arr
     """(n, 13), frame by frame."""
     rows = np.empty((len(time), NUMBERS), "<f8")
     rows[:, 0] = time
-    for place, values in enumerate((position, rate, acceleration)):
-        rows[:, 1 + place :: 3] = values
+    for index, values in enumerate((position, rate, acceleration)):
+        rows[:, 1 + index :: 3] = values
     return rows
