@@ -133,3 +133,27 @@ def quaternion_from_ned(q: ArrayLike) -> Array:
 def euler_from_ned(heading: ArrayLike, pitch: ArrayLike, bank: ArrayLike) -> tuple[Array, Array, Array]:
     """(yaw, pitch, roll) of NED (heading, pitch, bank): yaw = -heading, the others the same [rad]."""
     return -np.asarray(heading, float), np.asarray(pitch, float), np.asarray(bank, float)
+
+
+# From (east, north, up) to (north, up, east): a third of a turn about (1, 1, 1), backward.
+_NUE_FROM_ENU = np.array([0.5, -0.5, -0.5, -0.5])
+# From our body axes to (forward, left, up): a quarter turn about x.
+_FLU_FROM_OURS = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+
+
+def quaternion_from_enu(q: ArrayLike) -> Array:
+    """Ours from an east-north-up, forward-left-up quaternion (w, x, y, z), as ROS has it (REP 103). (n, 4)"""
+    return quaternion_product(quaternion_product(_NUE_FROM_ENU, np.asarray(q, float)), _FLU_FROM_OURS)
+
+
+def quaternion_from_turns(order: str, angles: ArrayLike) -> Array:
+    """The quaternion (n, 4) of three turns about body axes, one after the other: "ZYX" with angles (n, 3) [rad].
+
+    Body to reference in the axes of whoever wrote the angles (`Rotation.from_euler` of SciPy, capitals).
+    """
+    half = 0.5 * np.asarray(angles, float)
+    turns = np.zeros((len(order), *half.shape[:-1], 4))
+    for k, axis in enumerate(order):
+        turns[k, ..., 0], turns[k, ..., 1 + "XYZ".index(axis)] = np.cos(half[..., k]), np.sin(half[..., k])
+    first, second, third = turns
+    return quaternion_product(quaternion_product(first, second), third)

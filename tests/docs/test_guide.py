@@ -9,9 +9,11 @@ import pytest
 from fullpose.methods import METHODS
 from fullpose.registry import method_names
 from fullpose.rig import FRAMES, Geometry, builtin_rigs
+from fullpose_server.formats.choose_map import OWN
+from fullpose_server.formats.profile import shipped
 from fullpose_server.formats.rig_file import read_rig
 from fullpose_server.formats.rig_operating import PROCESS, TOLERANCES
-from fullpose_server.formats.trajectory import QUATERNION, Convention
+from fullpose_server.formats.trajectory import Convention
 from fullpose_server.operating import (
     OWNER_SILENCE,
     SERVER_SILENCE,
@@ -121,8 +123,8 @@ def test_formats_name_every_column() -> None:
     text = (GUIDE / "formats.md").read_text()
     for convention in Convention:
         assert f"| `{convention}`" in text
-        assert ", ".join(convention.euler) in text
-    assert ", ".join(QUATERNION) in text
+    for own in OWN:
+        assert ", ".join(spellings[0] for spellings in shipped()[own].wanted[1:]) in text
     for frame in FRAMES:
         assert f"{frame}_deg" in text
 

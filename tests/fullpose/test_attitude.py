@@ -12,9 +12,11 @@ from fullpose.attitude import (
     euler_from_dcm,
     euler_from_ned,
     quaternion_from_dcm,
+    quaternion_from_enu,
     quaternion_from_euler,
     quaternion_from_ned,
     quaternion_from_rotation_vector,
+    quaternion_from_turns,
     quaternion_product,
 )
 
@@ -71,6 +73,32 @@ def test_north_east_down(heading: float, pitch: float, bank: float) -> None:
     np.testing.assert_allclose(dcm_from_euler(*euler_from_ned(heading, pitch, bank))[0], ours, atol=1e-14)
     x, y, z, w = Rotation.from_matrix(body_from_ned.T).as_quat()
     np.testing.assert_allclose(dcm_from_quaternion(quaternion_from_ned([[w, x, y, z]]))[0], ours, atol=1e-14)
+
+
+def test_enu_and_forward_left_up_are_the_same_attitude_in_other_axes() -> None:
+    body_to_enu = Rotation.random(50, rng=np.random.default_rng(3))
+    ours_from_enu = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    ours_from_flu = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+    ours = ours_from_enu @ body_to_enu.as_matrix() @ ours_from_flu.T
+    q = quaternion_from_enu(body_to_enu.as_quat(scalar_first=True))
+    np.testing.assert_allclose(dcm_from_quaternion(q), ours.swapaxes(1, 2), atol=1e-14)
+
+
+def test_facing_east_in_enu_is_a_heading_of_a_quarter_turn() -> None:
+    ned = quaternion_from_ned(Rotation.from_euler("ZYX", [90, 0, 0], degrees=True).as_quat(scalar_first=True))
+    np.testing.assert_allclose(
+        dcm_from_quaternion(quaternion_from_enu([1.0, 0.0, 0.0, 0.0])), dcm_from_quaternion(ned), atol=1e-15
+    )
+
+
+@pytest.mark.parametrize("order", ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "ZXZ", "YXY"])
+def test_turns_in_any_order(order: str) -> None:
+    angles = np.random.default_rng(5).uniform(-3.0, 3.0, (40, 3))
+    np.testing.assert_allclose(
+        Rotation.from_quat(quaternion_from_turns(order, angles), scalar_first=True).as_matrix(),
+        Rotation.from_euler(order, angles).as_matrix(),
+        atol=1e-14,
+    )
 
 
 def test_many_rows_at_once() -> None:

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from fullpose._typing import Array
+from fullpose_server.formats.caution import Caution
 from fullpose_server.formats.mapped import map_doubles
-from fullpose_server.formats.trajectory import Caution, Trajectory
+from fullpose_server.formats.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class FlightFacts:
 
     def to_json(self) -> dict[str, Any]:
         """Values for `json`."""
-        return asdict(self) | {"warnings": [asdict(caution) for caution in self.warnings]}
+        return asdict(self) | {"warnings": [caution.to_json() for caution in self.warnings]}
 
     @classmethod
     def from_json(cls, values: dict[str, Any]) -> "FlightFacts":

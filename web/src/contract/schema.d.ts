@@ -4101,7 +4101,7 @@ export interface components {
              * @default nue
              * @enum {string}
              */
-            convention: "nue" | "ned";
+            convention: "nue" | "ned" | "enu";
             /**
              * Heading Deg
              * @default null
@@ -4146,7 +4146,7 @@ export interface components {
              * Convention
              * @enum {string}
              */
-            convention: "nue" | "ned";
+            convention: "nue" | "ned" | "enu";
             /**
              * Created At
              * Format: date-time
@@ -4173,9 +4173,9 @@ export interface components {
             source_bytes: number;
             /**
              * Source Format
-             * @enum {string}
+             * @description csv, parquet, json, or another format that is read
              */
-            source_format: "csv" | "parquet" | "json";
+            source_format: string;
             /**
              * Source Sha256
              * @description SHA-256 of the uploaded bytes
@@ -8683,7 +8683,7 @@ export interface operations {
                      * @default nue
                      * @enum {string}
                      */
-                    convention?: "nue" | "ned";
+                    convention?: "nue" | "ned" | "enu";
                     /**
                      * Format: binary
                      * @description CSV or Parquet

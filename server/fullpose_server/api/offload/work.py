@@ -6,7 +6,7 @@ Nothing of what a client sends is parsed in the server's own process: neither it
 import json
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
@@ -23,8 +23,9 @@ from fullpose_server.api.schemas.solve import SolveIn, SolveOut
 from fullpose_server.api.schemas.trajectories import TrajectoryIn
 from fullpose_server.formats.flight_folder import read_arrays, write_flight
 from fullpose_server.formats.importers.columns import Bounds, check_rows
-from fullpose_server.formats.trajectory import Convention, Trajectory, from_columns
-from fullpose_server.formats.trajectory_file import read_trajectory, source_format
+from fullpose_server.formats.importers.table import table_of
+from fullpose_server.formats.trajectory import Convention, Trajectory
+from fullpose_server.formats.trajectory_file import flight_in, read_trajectory
 from fullpose_server.planning.worker import Maker, Progress
 
 
@@ -94,7 +95,7 @@ def _read_file(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]
     source = Path(asked.source)
     bounds = Bounds(asked.rows, asked.columns)
     flight = read_trajectory(source, Convention(asked.convention), asked.file, bounds)
-    return _written(asked, flight, source_format(source), "")
+    return _written(asked, flight, "")
 
 
 def _read_json(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
@@ -106,12 +107,12 @@ def _read_json(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]
         raise ApiError(422, "validation", found.detail, errors=found.errors) from None
     check_rows(len(model.time_s), Bounds(asked.rows, asked.columns), model.name)
     columns = {name: np.array(column, dtype=np.float64) for name, column in model.columns().items()}
-    flight = from_columns(columns, Convention(model.convention), model.name, lambda row: row, unit="sample")
-    return _written(asked, flight, "json", model.name)
+    table = replace(table_of(model.name, "json", columns, place_word="sample"), place=lambda row: row)
+    return _written(asked, flight_in((table,), Convention(model.convention)), model.name)
 
 
-def _written(asked: ReadRequest, flight: Trajectory, kind: str, name: str) -> dict[str, Any]:
-    return {"facts": write_flight(Path(asked.folder), flight).to_json(), "format": kind, "name": name}
+def _written(asked: ReadRequest, flight: Trajectory, name: str) -> dict[str, Any]:
+    return {"facts": write_flight(Path(asked.folder), flight).to_json(), "format": flight.taken.format, "name": name}
 
 
 def _solve(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:

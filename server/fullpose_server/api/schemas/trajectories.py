@@ -9,10 +9,11 @@ from fullpose_server.api.schemas.base import Four, Notice, Number, Sha256, Wire
 from fullpose_server.api.schemas.labels import LabelledOut
 from fullpose_server.api.schemas.plans import DeviationOut
 
-ConventionName = Literal["nue", "ned"]
+ConventionName = Literal["nue", "ned", "enu"]
 Samples = Annotated[list[Number], Field(min_length=1, fail_fast=True)]
 
 _EULER = {"nue": ("yaw_deg", "pitch_deg", "roll_deg"), "ned": ("heading_deg", "pitch_deg", "bank_deg")}
+_EULER["enu"] = _EULER["nue"]
 
 
 class TrajectoryIn(Wire):
@@ -59,7 +60,7 @@ class TrajectoryOut(LabelledOut):
     source_sha256: Sha256 = Field(description="SHA-256 of the uploaded bytes")
     name: str
     convention: ConventionName
-    source_format: Literal["csv", "parquet", "json"]
+    source_format: str = Field(description="csv, parquet, json, or another format that is read")
     source_bytes: int
     samples: int
     start_s: float

@@ -5,8 +5,9 @@ Speed comes from Arrow; where Arrow refuses a file, a slow second pass finds the
 
 import csv
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import pyarrow as pa
@@ -15,7 +16,7 @@ import pyarrow.csv as pacsv
 from fullpose._typing import Array
 from fullpose_server.errors import FileError
 from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds, Filling, check_columns, check_rows
-from fullpose_server.formats.trajectory import Convention, Trajectory, column_names, from_columns
+from fullpose_server.formats.importers.table import Columns, Table
 
 _HEADER_BYTES = 1_000_000
 
@@ -26,21 +27,30 @@ class _Header:
     lines: int  # up to and with the header line
 
 
-def read_csv(path: Path, convention: Convention, file: str, bounds: Bounds = UNBOUNDED) -> Trajectory:
-    """The flight; `file` is its name in messages. Raises `FileError`, `TooLargeError`."""
+def read_tables(path: Path, file: str, bounds: Bounds = UNBOUNDED) -> tuple[Table, ...]:
+    """The one table; `file` is its name in messages. Raises `FileError`, `TooLargeError`."""
     header = _header(path, file)
     check_columns(len(header.names), bounds, file)
+    table = Table(
+        file=file,
+        format="csv",
+        names=tuple(header.names),
+        load=partial(_load, path, file, header, bounds),
+        place=lambda row: _line_of(path, file, header, row),
+        place_word="line",
+        header_place=header.lines,
+        head=tuple(tuple(cells) for _, cells in itertools.islice(_rows(path, file, header), 8)),
+    )
+    return (table,)
+
+
+def _load(path: Path, file: str, header: _Header, bounds: Bounds, wanted: Sequence[str]) -> Columns:
     try:
-        wanted = column_names(header.names, convention, file)
-    except FileError as error:
-        raise FileError(file, error.expected, line=header.lines, column=error.column, value=error.value) from None
-    try:
-        columns = _columns(path, file, header, wanted, bounds)
+        return _columns(path, file, header, tuple(wanted), bounds)
     except pa.ArrowInvalid as error:
         if "Empty CSV" in str(error):
             raise FileError(file, "at least one row of samples after the header") from None
-        raise _diagnose(path, file, header, wanted, str(error)) from None
-    return from_columns(columns, convention, file, lambda row: _line_of(path, file, header, row))
+        raise _diagnose(path, file, header, tuple(wanted), str(error)) from None
 
 
 def _columns(path: Path, file: str, header: _Header, wanted: tuple[str, ...], bounds: Bounds) -> dict[str, Array]:

@@ -5,6 +5,9 @@ then unpacks to is read batch by batch; a file whose pages are not what its meta
 reading process has.
 """
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +25,7 @@ from fullpose_server.formats.importers.columns import (
     check_columns,
     check_rows,
 )
-from fullpose_server.formats.trajectory import Convention, Trajectory, column_names, from_columns
+from fullpose_server.formats.importers.table import Columns, Table
 
 _BATCH = 65_536
 _FOOTER_BYTES = 4 * 1024 * 1024  # of metadata: thousands of row groups
@@ -31,27 +34,37 @@ _NUMBER_BYTES = 32
 _PAGE_BYTES = 1024 * 1024
 
 
-def read_parquet(path: Path, convention: Convention, file: str, bounds: Bounds = UNBOUNDED) -> Trajectory:
-    """The flight; `file` is its name in messages. Raises `FileError`, `TooLargeError`, `MemoryError`."""
+def read_tables(path: Path, file: str, bounds: Bounds = UNBOUNDED) -> tuple[Table, ...]:
+    """The one table; `file` is its name in messages. Raises `FileError`, `TooLargeError`, `MemoryError`."""
+    with _told(path, file) as parquet:
+        check_columns(parquet.metadata.num_columns, bounds, file)
+        check_rows(parquet.metadata.num_rows, bounds, file)
+        names = tuple(parquet.schema_arrow.names)
+    return (Table(file, "parquet", names, partial(_load, path, file)),)
+
+
+@contextmanager
+def _told(path: Path, file: str) -> Iterator[pq.ParquetFile]:
+    """The open file; what Arrow says of it is said as a `FileError`."""
     try:
         _check_footer(path, file)
         with pq.ParquetFile(path) as parquet:
-            check_columns(parquet.metadata.num_columns, bounds, file)
-            check_rows(parquet.metadata.num_rows, bounds, file)
-            present = list(parquet.schema_arrow.names)
-            wanted = column_names(present, convention, file)
-            for name in wanted:
-                kind = parquet.schema_arrow.field(name).type
-                if not (pa.types.is_floating(kind) or pa.types.is_integer(kind)):
-                    raise FileError(file, "a column of numbers", column=name, value=str(kind))
-            _check_unpacked(parquet.metadata, wanted, file)
-            columns = _columns(parquet, wanted, file)
+            yield parquet
     except MemoryError:  # Arrow's own is one of its exceptions, too
         raise
     except (pa.ArrowException, UnicodeDecodeError, OSError) as error:  # a broken column name is not even text
         said = str(error).splitlines() or [type(error).__name__]
         raise FileError(file, f"a whole Parquet file ({said[0][:200]})") from None
-    return from_columns(columns, convention, file, lambda row: row + 1, unit="row")
+
+
+def _load(path: Path, file: str, wanted: Sequence[str]) -> Columns:
+    with _told(path, file) as parquet:
+        for name in wanted:
+            kind = parquet.schema_arrow.field(name).type
+            if not (pa.types.is_floating(kind) or pa.types.is_integer(kind)):
+                raise FileError(file, "a column of numbers", column=name, value=str(kind))
+        _check_unpacked(parquet.metadata, wanted, file)
+        return _columns(parquet, tuple(wanted), file)
 
 
 def _check_footer(path: Path, file: str) -> None:
@@ -64,7 +77,7 @@ def _check_footer(path: Path, file: str) -> None:
         raise TooLargeError(file, f"metadata of at most {_FOOTER_BYTES} bytes", value=f"{length} bytes")
 
 
-def _check_unpacked(metadata: Any, wanted: tuple[str, ...], file: str) -> None:
+def _check_unpacked(metadata: Any, wanted: Sequence[str], file: str) -> None:
     """Raise `TooLargeError` where a column says that it unpacks to more than its rows can be."""
     for group in range(metadata.num_row_groups):
         for index in range(metadata.num_columns):

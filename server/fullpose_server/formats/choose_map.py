@@ -1,0 +1,113 @@
+"""Which columns of a file are the flight: what a person says, or the first profile that fits, and the reason."""
+
+from dataclasses import dataclass
+
+from fullpose_server.errors import FileError
+from fullpose_server.formats.column_map import ColumnMap
+from fullpose_server.formats.importers.table import Table
+from fullpose_server.formats.profile import Profile, find, shipped
+from fullpose_server.formats.trajectory import Convention
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A table, the map of its columns, the profile's name, and why it was taken."""
+
+    table: Table
+    columns: ColumnMap
+    profile: str
+    reason: str
+
+
+OWN = ("fullpose", "fullpose-ned", "fullpose-quaternion")
+
+
+def choose(tables: tuple[Table, ...], convention: Convention | None, profile: Profile | None = None) -> Choice:
+    """The table and map of a file. convention None: the profile's. Raises `FileError` where nothing fits."""
+    if profile is not None:
+        return _given(tables, convention, profile)
+    for table in tables:
+        _check_one_attitude(table)
+        for each in _candidates(table):
+            if (columns := each.bind(table, convention)) is None or not _allowed(each, convention):
+                continue
+            _check_once(table, columns)
+            return Choice(table, columns, each.name, _reason(table, each, convention))
+    raise _nothing_fits(tables[0], convention)
+
+
+def _given(tables: tuple[Table, ...], convention: Convention | None, profile: Profile) -> Choice:
+    for table in tables:
+        if profile.table is not None and len(tables) > 1 and table.name not in profile.table:
+            continue
+        if (columns := profile.bind(table, convention)) is not None:
+            if not _allowed(profile, convention):
+                raise _other_axes(table, profile, convention)
+            _check_once(table, columns)
+            return Choice(table, columns, profile.name, "as asked for")
+    table = tables[0]
+    missing = profile.missing(table)
+    raise table.error(f"{', '.join(missing)} of profile {profile.name} among {listing(table.names)}", missing[0])
+
+
+def _candidates(table: Table) -> list[Profile]:
+    profiles = shipped()
+    own = [profiles[table.profile]] if table.profile in profiles else []
+    return own + [each for each in profiles.values() if each.table is None or table.name in each.table]
+
+
+def _allowed(profile: Profile, convention: Convention | None) -> bool:
+    return convention is None or convention is profile.axes or not profile.axes_named
+
+
+def _reason(table: Table, profile: Profile, convention: Convention | None) -> str:
+    if table.profile == profile.name:
+        return f"as {table.format} has it"
+    if convention is None and not profile.axes_named:
+        return f"by its column names; axes {profile.axes} are assumed, --convention says others"
+    return "by its column names"
+
+
+def _check_one_attitude(table: Table) -> None:
+    """Raise `FileError` where a file has two of our own attitudes: which of them is meant is nobody's guess."""
+    profiles = shipped()
+    present = [[name for name in _attitude(profiles[each]) if name in table.names] for each in OWN]
+    euler, q = [*dict.fromkeys(present[0] + present[1])], present[2]
+    if euler and q and "time_s" in table.names:
+        raise table.error("one attitude, Euler angles or quaternion", value=f"{', '.join(euler)} and {', '.join(q)}")
+
+
+def _attitude(profile: Profile) -> list[str]:
+    return [spellings[0] for spellings in profile.wanted[1:]]
+
+
+def _check_once(table: Table, columns: ColumnMap) -> None:
+    for name in columns.columns:
+        if table.names.count(name) > 1:
+            raise table.error("each column once", name)
+
+
+def _other_axes(table: Table, profile: Profile, convention: Convention | None) -> FileError:
+    names = ", ".join(_attitude(profile))
+    return table.error(f"convention {profile.axes} for {names}", value=f"convention {convention}")
+
+
+def _nothing_fits(table: Table, convention: Convention | None) -> FileError:
+    profiles = shipped()
+    for each in profiles.values():
+        if each.bind(table) is not None:
+            return _other_axes(table, each, convention)
+    if find(table, ("time_s",)) is None:
+        expected = f"a column time_s among {listing(table.names)}, or a --profile that says which columns are what"
+        return table.error(expected, "time_s")
+    own = profiles["fullpose-ned" if convention is Convention.NED else "fullpose"]
+    q = profiles["fullpose-quaternion"]
+    nearer = q if len(q.missing(table)) < 4 else own
+    expected = f"{', '.join(_attitude(own))} or {', '.join(_attitude(q))} among {listing(table.names)}"
+    return table.error(expected, nearer.missing(table)[0])
+
+
+def listing(names: tuple[str, ...]) -> str:
+    """Column names for a message, not too many of them."""
+    shown = ", ".join(name or "(unnamed)" for name in names[:12])
+    return f"{shown}, ... ({len(names)} columns)" if len(names) > 12 else shown or "no columns at all"

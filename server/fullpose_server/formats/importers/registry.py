@@ -1,0 +1,81 @@
+"""Every kind of file that a flight is read from: one row each, told by its first bytes. The first that fits reads it.
+
+A new format is a module `importers/<format>.py` with `read_tables(path, file, bounds) -> tuple[Table, ...]`, and a row
+here. The module is imported when a file is its: a library that it needs costs nobody else anything, and where an extra
+is missing the message says which.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from fullpose_server.errors import FileError
+from fullpose_server.formats.importers import signatures
+from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds
+from fullpose_server.formats.importers.table import Table
+
+HEAD_BYTES = 65536
+
+
+@dataclass(frozen=True)
+class Head:
+    """What a format is told by: the first bytes of a file, and what it is called."""
+
+    data: bytes
+    path: Path
+
+    @property
+    def suffix(self) -> str:
+        """The last part of the name, `.csv`, in small letters."""
+        return self.path.suffix.lower()
+
+
+@dataclass(frozen=True)
+class Importer:
+    """A row: a format, by what it is told, and the module that reads it."""
+
+    name: str  # `input.format`
+    about: str  # what a person calls it
+    recognise: Callable[[Head], bool]
+    module: str  # has read_tables
+    extra: str | None = None  # `pip install 'fullpose[extra]'`, where it needs more than the base install
+
+
+IMPORTERS: tuple[Importer, ...] = (
+    Importer("parquet", "Parquet", lambda head: head.data.startswith(signatures.PARQUET), "parquet"),
+    # Further binary formats go here, before text.
+    Importer("csv", "CSV text", lambda head: signatures.is_text(head.data), "csv"),
+)
+
+
+def importer_of(path: Path, file: str, suffix_of: str = "") -> Importer:
+    """The row that reads a file; `file`: its name in messages, `suffix_of`: the name that its sender gave it.
+
+    Raises `FileError` where there is none, naming what the file is instead.
+    """
+    with path.open("rb") as stream:
+        data = stream.read(HEAD_BYTES)
+    if not data.strip():
+        raise FileError(file, "a header line and samples, the file is empty")
+    head = Head(data, Path(suffix_of) if suffix_of else path)
+    for row in IMPORTERS:
+        if row.recognise(head):
+            return row
+    raise FileError(file, "CSV text or Parquet, this is another binary file")
+
+
+def read_tables(
+    path: Path, file: str, bounds: Bounds = UNBOUNDED, importer: Importer | None = None
+) -> tuple[Table, ...]:
+    """The tables of a file, at least one. Raises `FileError`, `TooLargeError`, `OSError`."""
+    row = importer_of(path, file) if importer is None else importer
+    try:
+        module = import_module(f"fullpose_server.formats.importers.{row.module}")
+    except ModuleNotFoundError as error:
+        if row.extra is None or (error.name or "").startswith("fullpose"):
+            raise
+        expected = f"the extra {row.extra} for {row.about}: pip install 'fullpose[{row.extra}]'"
+        raise FileError(file, expected) from None
+    tables: tuple[Table, ...] = module.read_tables(path, file, bounds)
+    return tables

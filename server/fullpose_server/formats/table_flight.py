@@ -1,0 +1,139 @@
+"""From a table and its column map to a flight: stamps in seconds, attitudes as ours, each refusal with its place."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from fullpose._typing import Array, Integers
+from fullpose.attitude import (
+    euler_from_ned,
+    quaternion_from_enu,
+    quaternion_from_euler,
+    quaternion_from_ned,
+    quaternion_from_turns,
+)
+from fullpose.flight import bad_time, shortest
+from fullpose_server.errors import FileError
+from fullpose_server.formats.caution import Caution
+from fullpose_server.formats.column_map import AngleUnit, ColumnMap, Epoch, EulerMap, QuaternionMap, Sense, TimeMap
+from fullpose_server.formats.importers.table import Table
+from fullpose_server.formats.trajectory import Convention, Taken, Trajectory, continuous
+
+_BLOCK = 65536  # samples converted at once
+_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
+_NAMED = {Convention.NUE: "YZX", Convention.NED: "ZYX"}  # the orders of yaw, pitch, roll and of heading, pitch, bank
+
+
+def flight_of(table: Table, columns: ColumnMap, profile: str = "", warnings: tuple[Caution, ...] = ()) -> Trajectory:
+    """The flight of a table. `profile`: where the map is from; `warnings` go before those found here.
+
+    Raises `FileError`: no rows, a value that is not finite, time not increasing or out of range, a quaternion that is
+    none; `TooLargeError` from the table.
+    """
+    loaded = table.load(columns.columns)
+    if not loaded[columns.time.column].size:
+        raise FileError(table.file, "at least one row of samples after the header")
+    _check_finite(table, loaded, columns)
+    time = stamps(loaded[columns.time.column], columns.time)
+    if found := bad_time(time):
+        row, expected = found
+        raise table.error(expected, columns.time.column, shortest(float(loaded[columns.time.column][row])), row)
+    q, off = _attitudes(table, loaded, columns)
+    cautions = [*warnings, *table.cautions]
+    if off > 1e-3:
+        cautions.append(Caution("norm", f"quaternions are up to {off:.2g} off unit length; they were normalised"))
+    if columns.euler is not None and columns.euler.unit is AngleUnit.DEG:
+        cautions += _unit_warnings(*(np.asarray(loaded[name], float) for name in columns.euler.columns))
+    step = np.diff(time)
+    if step.size and float(np.median(step)) >= 1.0:
+        text = f"the median step is {float(np.median(step)):.6g} s: is {columns.time.column} in seconds?"
+        cautions.append(Caution("time-unit", text, columns.time.column))
+    taken = Taken(table.format, profile, table.name, statement(columns))
+    return Trajectory(time, continuous(q), columns.axes, tuple(cautions), taken)
+
+
+def stamps(given: Array | Integers, how: TimeMap) -> Array:
+    """The stamps (n,) [s]. Whole numbers are counted from the first before they are made doubles."""
+    if how.epoch is Epoch.FIRST:
+        given = given - given[0]
+    counted = np.array(given, dtype=np.float64)
+    # Divided, not multiplied: 3 ms are 0.003 s to the last bit.
+    return counted / how.unit.per_second if how.unit.per_second else counted * how.unit.seconds
+
+
+def statement(columns: ColumnMap) -> str:
+    """What was taken, in words."""
+    clock = f"{columns.time.column} in {columns.time.unit}"
+    if columns.time.epoch is Epoch.FIRST:
+        clock += " from the first sample"
+    if columns.euler is not None:
+        attitude = f"{', '.join(columns.euler.columns)} in {columns.euler.unit}, turned {columns.euler.order}"
+    elif columns.quaternion is not None:
+        w_to_z = ", ".join(columns.quaternion.columns)
+        attitude = f"{w_to_z} as w, x, y, z, {columns.quaternion.sense.replace('_', ' ')}"
+    return f"{clock}; {attitude}; axes {columns.axes}"
+
+
+def _check_finite(table: Table, loaded: Mapping[str, Array | Integers], columns: ColumnMap) -> None:
+    bad = [(int(np.argmin(ok)), name) for name in columns.columns if not (ok := np.isfinite(loaded[name])).all()]
+    if bad:
+        row, name = min(bad)
+        raise table.error("a finite number", name, shortest(float(loaded[name][row])), row)
+
+
+def _attitudes(table: Table, loaded: Mapping[str, Array | Integers], columns: ColumnMap) -> tuple[Array, float]:
+    """Ours (n, 4), and by how much the longest or shortest was off unit length."""
+    rows = loaded[columns.time.column].size
+    q, off = np.empty((rows, 4)), 0.0
+    for begin in range(0, rows, _BLOCK):  # what is between columns and attitudes is several times as large
+        part = slice(begin, begin + _BLOCK)
+        given = np.stack([np.asarray(loaded[name][part], float) for name in columns.attitude], axis=-1)
+        if columns.quaternion is not None:
+            q[part], largest = _from_quaternion(table, given, columns.quaternion, columns.axes, begin)
+            off = max(off, largest)
+        elif columns.euler is not None:
+            q[part] = _from_euler(given, columns.euler, columns.axes)
+    return q, off
+
+
+def _from_euler(given: Array, how: EulerMap, axes: Convention) -> Array:
+    degrees = given / 100.0 if how.unit is AngleUnit.CENTIDEG else given
+    angles = given if how.unit is AngleUnit.RAD else np.deg2rad(degrees)
+    if _NAMED.get(axes) == how.order:
+        yaw, pitch, roll = angles.T
+        return quaternion_from_euler(*(euler_from_ned(yaw, pitch, roll) if axes is Convention.NED else angles.T))
+    return in_our_axes(quaternion_from_turns(how.order, angles), axes)
+
+
+def _from_quaternion(
+    table: Table, given: Array, how: QuaternionMap, axes: Convention, begin: int
+) -> tuple[Array, float]:
+    norm = np.linalg.norm(given, axis=-1)
+    bad = ~((norm > 0.5) & (norm < 2.0))
+    if bad.any():
+        row = int(np.argmax(bad))
+        zero = norm[row] < 1e-9
+        expected = f"a unit quaternion, {'this one is zero' if zero else f'not |q|={norm[row]:.3g}'}"
+        raise table.error(expected, how.columns[0], shortest(given[row, 0]), begin + row)
+    unit = given / norm[:, None]
+    if how.sense is Sense.REFERENCE_TO_BODY:
+        unit = unit * _CONJUGATE
+    return in_our_axes(unit, axes), float(np.max(np.abs(norm - 1.0)))
+
+
+def in_our_axes(q: Array, axes: Convention) -> Array:
+    """Ours from q (n, 4), body to reference in the axes that it was written in."""
+    if axes is Convention.NED:
+        return quaternion_from_ned(q)
+    return quaternion_from_enu(q) if axes is Convention.ENU else q
+
+
+def _unit_warnings(first: Array, second: Array, third: Array) -> list[Caution]:
+    """Radians in degree columns look like a flight of tiny angles: inside +-2 pi, the pitch inside +-pi / 2."""
+    turn, quarter = 2.0 * np.pi + 1e-6, 0.5 * np.pi + 1e-6
+    peak = max(float(np.max(np.abs(column))) for column in (first, second, third))
+    inside = float(np.max(np.abs(second))) <= quarter and peak <= turn
+    if inside and peak > 0.1:
+        text = f"all angles are within {peak:.4g} deg: if the file is in radians, convert it to degrees"
+        return [Caution("angle-unit", text)]
+    return []
