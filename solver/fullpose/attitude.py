@@ -146,14 +146,14 @@ def quaternion_from_enu(q: ArrayLike) -> Array:
     return quaternion_product(quaternion_product(_NUE_FROM_ENU, np.asarray(q, float)), _FLU_FROM_OURS)
 
 
-def quaternion_from_turns(order: str, angles: ArrayLike) -> Array:
-    """The quaternion (n, 4) of three turns about body axes, one after the other: "ZYX" with angles (n, 3) [rad].
+def quaternion_from_rotations(order: str, angles: ArrayLike) -> Array:
+    """The quaternion (n, 4) of three rotations about body axes, one after the other: "ZYX" with angles (n, 3) [rad].
 
     Body to reference in the axes of whoever wrote the angles (`Rotation.from_euler` of SciPy, capitals).
     """
     half = 0.5 * np.asarray(angles, float)
-    turns = np.zeros((len(order), *half.shape[:-1], 4))
+    rotations = np.zeros((len(order), *half.shape[:-1], 4))
     for k, axis in enumerate(order):
-        turns[k, ..., 0], turns[k, ..., 1 + "XYZ".index(axis)] = np.cos(half[..., k]), np.sin(half[..., k])
-    first, second, third = turns
+        rotations[k, ..., 0], rotations[k, ..., 1 + "XYZ".index(axis)] = np.cos(half[..., k]), np.sin(half[..., k])
+    first, second, third = rotations
     return quaternion_product(quaternion_product(first, second), third)

@@ -16,7 +16,7 @@ from fullpose.attitude import (
     quaternion_from_euler,
     quaternion_from_ned,
     quaternion_from_rotation_vector,
-    quaternion_from_turns,
+    quaternion_from_rotations,
     quaternion_product,
 )
 
@@ -95,7 +95,7 @@ def test_facing_east_in_enu_is_a_heading_of_a_quarter_turn() -> None:
 def test_turns_in_any_order(order: str) -> None:
     angles = np.random.default_rng(5).uniform(-3.0, 3.0, (40, 3))
     np.testing.assert_allclose(
-        Rotation.from_quat(quaternion_from_turns(order, angles), scalar_first=True).as_matrix(),
+        Rotation.from_quat(quaternion_from_rotations(order, angles), scalar_first=True).as_matrix(),
         Rotation.from_euler(order, angles).as_matrix(),
         atol=1e-14,
     )

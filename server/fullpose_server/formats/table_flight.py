@@ -10,7 +10,7 @@ from fullpose.attitude import (
     quaternion_from_enu,
     quaternion_from_euler,
     quaternion_from_ned,
-    quaternion_from_turns,
+    quaternion_from_rotations,
 )
 from fullpose.flight import bad_time, shortest
 from fullpose_server.errors import FileError
@@ -102,7 +102,7 @@ def _from_euler(given: Array, how: EulerMap, axes: Convention) -> Array:
     if _NAMED.get(axes) == how.order:
         yaw, pitch, roll = angles.T
         return quaternion_from_euler(*(euler_from_ned(yaw, pitch, roll) if axes is Convention.NED else angles.T))
-    return in_our_axes(quaternion_from_turns(how.order, angles), axes)
+    return in_our_axes(quaternion_from_rotations(how.order, angles), axes)
 
 
 def _from_quaternion(

@@ -107,7 +107,7 @@ def _read_json(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]
         raise ApiError(422, "validation", found.detail, errors=found.errors) from None
     check_rows(len(model.time_s), Bounds(asked.rows, asked.columns), model.name)
     columns = {name: np.array(column, dtype=np.float64) for name, column in model.columns().items()}
-    table = replace(table_of(model.name, "json", columns, place_word="sample"), place=lambda row: row)
+    table = replace(table_of(model.name, "json", columns, row_word="sample"), line_of=lambda row: row)
     return _written(asked, flight_in((table,), Convention(model.convention)), model.name)
 
 

@@ -36,9 +36,9 @@ def read_tables(path: Path, file: str, bounds: Bounds = UNBOUNDED) -> tuple[Tabl
         format="csv",
         names=tuple(header.names),
         load=partial(_load, path, file, header, bounds),
-        place=lambda row: _line_of(path, file, header, row),
-        place_word="line",
-        header_place=header.lines,
+        line_of=lambda row: _line_of(path, file, header, row),
+        row_word="line",
+        header_line=header.lines,
         head=tuple(tuple(cells) for _, cells in itertools.islice(_rows(path, file, header), 8)),
     )
     return (table,)

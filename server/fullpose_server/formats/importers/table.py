@@ -43,9 +43,9 @@ class Table:
     units: Mapping[str, str] = field(
         default_factory=dict
     )  # of a column, as the file says it ("deg", "ms"), where it does
-    place: Callable[[int], int] = field(default=_from_one, repr=False)  # of a row from 0, for messages: its line
-    place_word: str = "row"  # what `place` counts: "line", "row", "message"
-    header_place: int | None = None  # where the names are
+    line_of: Callable[[int], int] = field(default=_from_one, repr=False)  # of a row from 0, for messages: its line
+    row_word: str = "row"  # what `line_of` counts: "line", "row", "message"
+    header_line: int | None = None  # where the names are
     profile: str | None = None  # the named profile that this format's columns have, where the format fixes them
     cautions: tuple[Caution, ...] = ()
     head: tuple[tuple[str, ...], ...] = ()  # the first rows as text, for a person to look at; cells as `names`
@@ -58,8 +58,8 @@ class Table:
         self, expected: str, column: str | None = None, value: str | None = None, row: int | None = None
     ) -> FileError:
         """A `FileError` at a row, counted from 0, or in the header."""
-        place = self.header_place if row is None else self.place(row)
-        return FileError(self.file, expected, line=place, column=column, value=value, unit=self.place_word)
+        line = self.header_line if row is None else self.line_of(row)
+        return FileError(self.file, expected, line=line, column=column, value=value, unit=self.row_word)
 
 
 def table_of(
@@ -69,7 +69,7 @@ def table_of(
     *,
     name: str = "",
     units: Mapping[str, str] | None = None,
-    place_word: str = "row",
+    row_word: str = "row",
     profile: str | None = None,
     cautions: tuple[Caution, ...] = (),
 ) -> Table:
@@ -81,7 +81,7 @@ def table_of(
         load=lambda names: {each: columns[each] for each in names},
         name=name,
         units=units or {},
-        place_word=place_word,
+        row_word=row_word,
         profile=profile,
         cautions=cautions,
         head=first_rows(columns),
