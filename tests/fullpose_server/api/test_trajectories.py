@@ -84,7 +84,7 @@ def test_radians_are_warned_about(server: LiveServer) -> None:
 
 
 def test_an_unknown_convention(server: LiveServer) -> None:
-    assert "enu" in problem(server.upload(convention="enu"), 422, "validation")["detail"]
+    assert "xyz" in problem(server.upload(convention="enu"), 422, "validation")["detail"]
 
 
 def test_a_form_without_a_file_and_a_body_that_is_neither(server: LiveServer) -> None:
@@ -101,7 +101,7 @@ def test_a_form_without_a_file_and_a_body_that_is_neither(server: LiveServer) ->
         {"time_s": [0.0, "soon"]},
         {"pitch_deg": [1.0]},
         {"q": [[1, 0, 0, 0], [1, 0, 0, 0]]},
-        {"convention": "enu"},
+        {"convention": "xyz"},
         {"speed": 1},
     ],
 )
