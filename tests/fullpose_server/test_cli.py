@@ -146,7 +146,7 @@ def test_bad_input_is_one_clear_line_and_out_is_untouched(tmp_path: Path, text: 
         (("--method", "magic"), "exact"),
         (("--start", "1,2,3"), "four angles"),
         (("--start", "1,2,3,nan"), "four angles"),
-        (("--convention", "enu"), "ned"),
+        (("--convention", "xyz"), "ned"),
         (("--option", "nonsense=1"), "nonsense"),
         (("--option", "nonsense"), "name=value"),
         (("--out", "/dev/null/x.csv"), "place to write"),

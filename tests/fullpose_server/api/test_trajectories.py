@@ -84,7 +84,7 @@ def test_radians_are_warned_about(server: LiveServer) -> None:
 
 
 def test_an_unknown_convention(server: LiveServer) -> None:
-    assert "xyz" in problem(server.upload(convention="enu"), 422, "validation")["detail"]
+    assert "xyz" in problem(server.upload(convention="xyz"), 422, "validation")["detail"]
 
 
 def test_a_form_without_a_file_and_a_body_that_is_neither(server: LiveServer) -> None:
