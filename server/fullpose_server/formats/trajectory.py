@@ -11,6 +11,7 @@ from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion, euler_from_dcm
 from fullpose_server.formats.caution import Caution
 
+QUATERNION = ("qw", "qx", "qy", "qz")  # our own columns of an attitude
 _BLOCK = 65536  # samples converted at once
 
 
