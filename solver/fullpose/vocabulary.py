@@ -22,3 +22,20 @@ class RemedyKind(StrEnum):
     HEADING_OFFSET = "heading_offset"
     MOUNTING_OFFSET = "mounting_offset"
     RELAX = "relax"
+
+
+class Certainty(StrEnum):
+    """How sure a verdict is."""
+
+    CHECKED = "checked"  # every sample was checked
+    GRID_COMPLETE = "grid_complete"  # no path exists on the grid, even widened; no theorem
+    EVIDENCE = "evidence"  # none was found
+    COMPLETE = "complete"  # there is nothing else to try
+
+
+class Consequence(StrEnum):
+    """What the attitude asks for once a frame has reached its limit."""
+
+    ANOTHER_FRAME = "another_frame"  # another frame would have to go beyond a limit
+    SAME_FRAME = "same_frame"  # the frame itself would, whatever the others do
+    NOT_NAMED = "not_named"  # no single limit of another frame

@@ -8,8 +8,9 @@ import numpy as np
 from fullpose.bounds import limited_name
 from fullpose.compare import EXACT_WITHIN
 from fullpose.rig import FRAMES, Rig
-from fullpose.solution import Solution
+from fullpose.solution import Blocking, Solution
 from fullpose.verify import Verification
+from fullpose_server.formats.reason_text import UNITS, reason_report
 
 if TYPE_CHECKING:
     from fullpose.plan import Plan  # the planner is heavy; who has a plan or margins has loaded it
@@ -63,10 +64,14 @@ def make_report(solution: Solution, verification: Verification) -> dict[str, Any
         "limit_violation_samples": sum(v.samples for v in verification.violations),
         "limited_samples": solution.limited_samples,
         "limited_by": _limited_by(solution),
-        "blocking": None
-        if blocking is None
-        else {"time_s": float(blocking.time), "frame": blocking.frame, "limit": blocking.limit},
+        "blocking": _blocking(blocking),
     }
+
+
+def _blocking(blocking: Blocking | None) -> dict[str, Any] | None:
+    if blocking is None:
+        return None
+    return {"time_s": float(blocking.time), "frame": blocking.frame, "limit": blocking.limit}
 
 
 def exact_percent(exact: int, samples: int) -> float:
@@ -92,6 +97,10 @@ def verdict_report(plan: "Plan") -> dict[str, Any]:
         "verdict": {
             "decided_by": verdict.decided_by,
             "statement": verdict.statement,
+            **reason_report(verdict.reason, verdict.closed),
+            "closed": _blocking(verdict.closed),
+            "certainty": verdict.certainty,
+            "how_sure": verdict.how_sure,
             "grid_deg": _finite(math.degrees(verdict.grid)),
             "least_tolerance_deg": _finite(math.degrees(verdict.least_tolerance)),
             "max_matrix_error_between_samples": _finite(verdict.between),
@@ -135,6 +144,8 @@ def why_infeasible(report: dict[str, Any]) -> str | None:
             f"it misses the attitude by up to {report['max_error_deg']:.3g} deg, more than the tolerance of "
             f"{report['tolerance_deg']:g} deg"
         )
+    if blocking is not None and (told := report.get("verdict", {}).get("what_happens")) is not None:
+        return str(told)
     if blocking is not None:
         limit = f"{blocking['limit']} limit of the {blocking['frame']} frame"
         return f"at {blocking['time_s']:.3f} s the {limit} closes the way"
@@ -164,9 +175,6 @@ def why_not_exact(report: dict[str, Any]) -> str | None:
         f"{missed} of {report['samples']} samples miss the attitude by more than {math.degrees(EXACT_WITHIN):.0e} deg, "
         f"up to {report['max_error_deg']:.3g} deg"
     )
-
-
-UNITS = {"position": "deg", "rate": "deg/s", "acceleration": "deg/s^2"}
 
 
 def _limited_by(solution: Solution) -> list[dict[str, Any]]:

@@ -4,7 +4,8 @@ import html
 import math
 from typing import Any
 
-from fullpose_server.formats.report import UNITS, exact_text
+from fullpose_server.formats.reason_text import UNITS
+from fullpose_server.formats.report import exact_text
 
 HEADINGS = (
     ("Method", "the source is shown over the name"),

@@ -11,7 +11,7 @@ from fullpose.plan.remedies import NOTHING, Remedy, offset, relax, slow_down
 from fullpose.rig import FRAMES, Rig
 from fullpose.vocabulary import RemedyKind
 from fullpose_server.errors import NoRemedyError
-from fullpose_server.formats.report import UNITS
+from fullpose_server.formats.reason_text import UNITS
 from fullpose_server.planning.remedy_request import RemedyRequest
 
 

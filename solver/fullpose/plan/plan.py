@@ -13,9 +13,10 @@ from fullpose.lead import lead_in, lead_out
 from fullpose.methods.start_pose import start_pose
 from fullpose.plan.beam_path import attainable_rates
 from fullpose.plan.decision import Flown, fly, fly_three_axis
-from fullpose.plan.fallback import Fallback
+from fullpose.plan.fallback import EXACT_ERROR, Fallback
+from fullpose.plan.reason import reason_of
 from fullpose.plan.strategies import Task
-from fullpose.plan.verdict import Margins, Verdict, check, margins, verdict_on, with_least_tolerance
+from fullpose.plan.verdict import Margins, Verdict, check, margins, verdict_on, with_least_tolerance, with_reason
 from fullpose.rig import Rig
 from fullpose.solution import Solution
 from fullpose.trajectory.curve import polish
@@ -119,6 +120,8 @@ def _finished(problem: Problem, flown: Flown, stopwatch: Clock) -> Plan:
     exact = verdict.feasible and flown.decided_by is not Decision.TOLERANCE
     if exact or problem.options.best_effort:
         verdict = with_least_tolerance(verdict, found, exact)
+        if not exact:
+            verdict = _explained(problem, verdict, angles, found.error)
     into, out = lead_in(time[:3], angles[:3], rig), lead_out(time[-3:], angles[-3:], rig)
     elapsed = stopwatch()
     solution = Solution(
@@ -128,6 +131,15 @@ def _finished(problem: Problem, flown: Flown, stopwatch: Clock) -> Plan:
     refusal = "; ".join(lead.refusal for lead in (into, out) if lead.refusal)
     room = margins(time, angles, rig)
     return Plan(solution, verdict, room, into.angles, out.angles, flown.node_paths, refusal)
+
+
+def _explained(problem: Problem, verdict: Verdict, angles: Array, error: Array) -> Verdict:
+    """The verdict with what happens first along the angles, and what then."""
+    closed = -math.inf
+    if verdict.closed is not None and problem.rig.geometry.redundant:
+        closed = verdict.closed.time
+    found = reason_of(problem.time, problem.attitude, angles, error > EXACT_ERROR, problem.rig, closed)
+    return with_reason(verdict, found)
 
 
 def _polished(problem: Problem, flown: Flown) -> Array:

@@ -7,10 +7,11 @@ import numpy as np
 
 from fullpose._typing import Array, Integers
 from fullpose.kinematics import singularity_measures
+from fullpose.plan.reason import Reason
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Blocking
 from fullpose.verify import Violation, attitude_errors, differences, payload_attitudes, verify
-from fullpose.vocabulary import Decision
+from fullpose.vocabulary import Certainty, Decision
 
 CHUNK = 1 << 18  # samples looked at together, so that an hour needs no copies of itself
 STENCIL = 4  # samples that a cubic goes through
@@ -19,37 +20,51 @@ OVERSHOOT = 1e-3  # share of a rate or acceleration limit that a cubic goes over
 CLEAR = math.radians(1e-3)  # [rad] likewise, of a position limit
 
 
-STATEMENTS = {
-    Decision.CHECKED: "Feasible: every sample checked by code apart from the planner.",
+FEASIBLE = {
+    Decision.CHECKED: "Feasible",
+    Decision.TOLERANCE: "Feasible within the tolerance",
+}
+# What a verdict rests on: how sure it is, and in words; {closed} is the time [s] that the search did not get past.
+CERTAINTY = {
+    Decision.CHECKED: Certainty.CHECKED, Decision.TOLERANCE: Certainty.CHECKED,
+    Decision.POSITION: Certainty.GRID_COMPLETE, Decision.RATE: Certainty.GRID_COMPLETE,
+    Decision.ACCELERATION: Certainty.EVIDENCE, Decision.START_RATE: Certainty.EVIDENCE,
+    Decision.THREE_AXIS: Certainty.COMPLETE,
+}  # fmt: skip
+HOW_SURE = {
+    Decision.CHECKED: "every sample checked by code apart from the planner.",
     Decision.TOLERANCE: (
-        "Feasible within the tolerance: no exact path was found inside the limits, one within the tolerance was; every "
-        "sample checked by code apart from the planner."
+        "no exact path was found inside the limits, one within the tolerance was; every sample checked by code apart "
+        "from the planner."
     ),
     Decision.POSITION: (
-        "Infeasible: at the blocking time no exact pose lies inside the position limits that can be reached; "
+        "past {closed:.3f} s no exact pose lies inside the position limits that can be reached; "
         "no path of nodes exists on the grid even with every range and edge widened by the grid's covering step. "
         "Grid-complete away from the singularity, not a theorem."
     ),
     Decision.RATE: (
-        "Infeasible: no path of nodes obeys the rate limits past the blocking time, even with every edge widened "
+        "no path of nodes obeys the rate limits past {closed:.3f} s, even with every edge widened "
         "by the grid's covering step. Grid-complete away from the singularity, not a theorem."
     ),
     Decision.ACCELERATION: (
-        "Infeasible as far as the search went: node paths inside the rate limits exist, but none of those "
-        "refined came inside every limit, with or without regard to the accelerations; "
-        "the blocking place is the worst of the best one. Evidence, not a proof."
+        "as far as the search went: node paths inside the rate limits exist, but none of those "
+        "refined came inside every limit, with or without regard to the accelerations; the best of them fails worst at "
+        "{closed:.3f} s. Evidence, not a proof."
     ),
     Decision.START_RATE: (
-        "Infeasible with the start rate asked for: no path was found that takes it up inside the limits; the "
-        "blocking frame is the one it fails by. Evidence, not a proof."
+        "with the start rate asked for no path was found that takes it up inside the limits. Evidence, not a proof."
     ),
-    Decision.THREE_AXIS: "Infeasible: a three-axis rig has no freedom but the choice of the Euler set and its turns.",
+    Decision.THREE_AXIS: "a three-axis rig has no freedom but the choice of the Euler set and its turns.",
 }
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether the flight can be flown. `decided_by` names the stage that decided; `grid` [rad] it used."""
+    """Whether the flight can be flown. `decided_by` names the stage that decided; `grid` [rad] it used.
+
+    `blocking` is what happens first along the angles that the plan has, as `reason` tells it; `closed` where the search
+    for an exact path came to its end. Both are the same where there is no reason to tell.
+    """
 
     feasible: bool
     blocking: Blocking | None
@@ -60,6 +75,19 @@ class Verdict:
     between_angle: float = math.nan  # [rad] the same as an angle
     # [rad] of attitude for which it is inside every limit, the least that was found; 0: exact; nan: not looked for
     least_tolerance: float = math.nan
+    closed: Blocking | None = None
+    reason: Reason | None = None
+
+    @property
+    def certainty(self) -> Certainty:
+        """How sure it is."""
+        return CERTAINTY[self.decided_by]
+
+    @property
+    def how_sure(self) -> str:
+        """What that rests on, in words."""
+        words = HOW_SURE[self.decided_by].format(closed=math.nan if self.closed is None else self.closed.time)
+        return words[0].upper() + words[1:]
 
 
 @dataclass(frozen=True)
@@ -170,10 +198,23 @@ def verdict_on(found: Check, rig: Rig, blocking: Blocking | None, decided_by: De
         blocking = Blocking(first.time, first.frame, first.limit)
         decided_by = Decision.ACCELERATION if rig.geometry.redundant else Decision.THREE_AXIS
     between = found.between
-    statement = STATEMENTS[decided_by]
+    rests = HOW_SURE[decided_by].format(closed=math.nan if blocking is None else blocking.time)
+    statement = f"{FEASIBLE.get(decided_by, 'Infeasible')}: {rests}"
     if blocking is None:
         statement = f"{statement} {between.sentence()}"
-    return Verdict(blocking is None, blocking, decided_by, grid, statement, between.matrix, between.angle)
+    return Verdict(
+        blocking is None, blocking, decided_by, grid, statement, between.matrix, between.angle, closed=blocking
+    )
+
+
+def with_reason(verdict: Verdict, reason: Reason | None) -> Verdict:
+    """The verdict and the reason for it, which says what blocks an infeasible flight."""
+    if reason is None:
+        return verdict
+    if verdict.feasible:
+        return replace(verdict, reason=reason)
+    first = reason.first
+    return replace(verdict, reason=reason, blocking=Blocking(first.time, first.frame, first.limit))
 
 
 def with_least_tolerance(verdict: Verdict, found: Check, exact: bool) -> Verdict:

@@ -192,7 +192,8 @@ def test_an_attitude_that_jumps_between_samples_is_refused():
     C = dcm_from_euler(np.where(t < 0.5, 0.0, 1.0), 0.0, 0.0)
     made = plan(t, C, LIMITED)
     assert not made.verdict.feasible
-    assert made.verdict.blocking.time == pytest.approx(0.5, abs=0.06)
+    assert made.verdict.closed.time == pytest.approx(0.5, abs=0.06)
+    assert made.verdict.blocking.time <= 0.56  # a frame is on a limit before it, to be where it must be
     assert verify(t, made.solution.angles, LIMITED).violations == ()
 
 
@@ -200,4 +201,4 @@ def test_without_best_effort_the_verdict_is_the_same():
     t, C = flight(0, 4.0, 230.0)
     with_effort, without = plan(t, C, LIMITED), plan(t, C, LIMITED, options=PlanOptions(best_effort=False))
     assert with_effort.verdict.feasible == without.verdict.feasible
-    assert with_effort.verdict.blocking == without.verdict.blocking
+    assert with_effort.verdict.closed == without.verdict.closed == without.verdict.blocking

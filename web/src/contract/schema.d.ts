@@ -1262,6 +1262,12 @@ export interface components {
             rate_deg_s: number;
         };
         /**
+         * Certainty
+         * @description How sure a verdict is.
+         * @enum {string}
+         */
+        Certainty: "checked" | "grid_complete" | "evidence" | "complete";
+        /**
          * CommandDone
          * @description A command that was accepted, and what it gave.
          */
@@ -1415,6 +1421,12 @@ export interface components {
             command: "connect";
             lease?: components["schemas"]["LeaseToken"] | null;
         };
+        /**
+         * Consequence
+         * @description What the attitude asks for once a frame has reached its limit.
+         * @enum {string}
+         */
+        Consequence: "another_frame" | "same_frame" | "not_named";
         /**
          * DeviationOut
          * @description By how much the flight that is flown differs from the samples as they were given.
@@ -1984,6 +1996,28 @@ export interface components {
             limit: "position" | "rate" | "acceleration";
             /** Sample */
             sample: number;
+        };
+        /**
+         * LimitMetOut
+         * @description A frame and one of its limits: `value` against `bound`, in deg, deg/s or deg/s^2 by the limit.
+         */
+        LimitMetOut: {
+            /** Bound */
+            bound: number;
+            /**
+             * Frame
+             * @enum {string}
+             */
+            frame: "base" | "outer" | "middle" | "inner";
+            /**
+             * Limit
+             * @enum {string}
+             */
+            limit: "position" | "rate" | "acceleration";
+            /** Time S */
+            time_s: number;
+            /** Value */
+            value: number;
         };
         /**
          * LiveLoad
@@ -4306,16 +4340,29 @@ export interface components {
          * @description What the verdict of method plan rests on.
          */
         VerdictOut: {
+            /** @description How sure the verdict is */
+            certainty?: components["schemas"]["Certainty"] | null;
+            /** @description Where the search for an exact path came to its end */
+            closed?: components["schemas"]["BlockingOut"] | null;
+            /** @description Which frame cannot follow from there */
+            consequence?: components["schemas"]["Consequence"] | null;
             /**
              * Decided By
              * @description checked; tolerance; or the limit that closes the way, start_rate, or three-axis
              */
             decided_by: string;
+            /** @description The limit that a frame reaches first, and when */
+            first?: components["schemas"]["LimitMetOut"] | null;
             /**
              * Grid Deg
              * @description Of the search; null where there was none
              */
             grid_deg: number | null;
+            /**
+             * How Sure
+             * @description What that rests on, in words
+             */
+            how_sure?: string | null;
             /**
              * Least Tolerance Deg
              * @description The smallest attitude tolerance found for which the flight is inside every limit; 0: exact; null: not looked for
@@ -4325,6 +4372,13 @@ export interface components {
             max_matrix_error_between_samples: number | null;
             /** Statement */
             statement: string;
+            /** @description What the attitude would need from there; of the same frame, bound is where it is then */
+            then?: components["schemas"]["LimitMetOut"] | null;
+            /**
+             * What Happens
+             * @description Why it is not flown exactly: what happens first and what then; null: it is, or unknown
+             */
+            what_happens?: string | null;
         };
         /**
          * VersionOut

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Plan } from "../contract/types";
-import { blockSentence, marginOf } from "./margins";
+import { blockSentence, marginOf, marksOf } from "./margins";
 
 const LIMITS = { min_deg: -60, max_deg: 60, max_rate_deg_s: 100, max_acceleration_deg_s2: null, home_deg: 0 };
 const FREE = { ...LIMITS, min_deg: null, max_deg: null };
@@ -43,6 +43,19 @@ describe("what closes the way, as a sentence", () => {
     const skew = { ...LIMITS, min_deg: -10 };
     expect(blockSentence(blocked, skew)).toContain("limit of −10 … 60 deg");
     expect(blockSentence(plan(1), LIMITS)).toBeNull();
+  });
+
+  it("is the planner's own where it has one, and both moments are marked", () => {
+    const then = { frame: "outer", limit: "rate", time_s: 2.61, value: -310.04, bound: -250 };
+    const what_happens = "at 2.450 s the inner frame reaches its stop at 60 deg; from there the outer would need more";
+    const blocking = { frame: "inner", limit: "position", time_s: 2.45 };
+    const blocked = plan(0, { blocking, verdict: { what_happens, then } });
+    expect(blockSentence(blocked, LIMITS)).toBe(`A${what_happens.slice(1)}.`);
+    expect(marksOf(blocked)).toEqual([
+      { frame: "inner", limit: "position", timeS: 2.45, label: "position limit" },
+      { frame: "outer", limit: "rate", timeS: 2.61, label: "needs 310.0 deg/s" },
+    ]);
+    expect(marksOf(plan(1))).toEqual([]);
   });
 
   it("tells how far a violation goes", () => {

@@ -57,10 +57,29 @@ export function blockOf(plan: Plan): Blocking | null {
   return found && { frame: found.frame, limit: found.limit, timeS: found.time_s };
 }
 
-/** The block as a sentence, with the limit it is at. */
+export interface LimitMark extends Blocking {
+  label: string;
+}
+
+/** What is drawn into the plots: what blocks, and what the attitude would need from there of a frame. */
+export function marksOf(plan: Plan): LimitMark[] {
+  const block = blockOf(plan);
+  if (!block) return [];
+  const marks = [{ ...block, label: `${block.limit} limit` }];
+  const then = plan.report?.verdict?.then;
+  if (then) {
+    const label = `needs ${fixed(Math.abs(then.value), 1)} ${UNITS[then.limit]}`;
+    marks.push({ frame: then.frame, limit: then.limit, timeS: then.time_s, label });
+  }
+  return marks;
+}
+
+/** The block as a sentence: what happens first and what then, as the planner tells it, or the limit it is at. */
 export function blockSentence(plan: Plan, limits: FrameLimits | undefined): string | null {
   const block = blockOf(plan);
   if (!block) return null;
+  const told = plan.report?.verdict?.what_happens;
+  if (told) return `${told[0]?.toUpperCase()}${told.slice(1)}.`;
   const { frame, limit, timeS } = block;
   const where = `At ${fixed(timeS, 3)} s the ${frame} frame`;
   const violation = plan.report?.blocking ? undefined : plan.report?.limit_violations[0];

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from fullpose.vocabulary import RemedyKind
+from fullpose.vocabulary import Certainty, Consequence, RemedyKind
 from fullpose_server.api.schemas.base import (
     FieldProblem,
     Four,
@@ -85,6 +85,16 @@ class BlockingOut(Wire):
     limit: LimitName
 
 
+class LimitMetOut(Wire):
+    """A frame and one of its limits: `value` against `bound`, in deg, deg/s or deg/s^2 by the limit."""
+
+    time_s: float
+    frame: FrameName
+    limit: LimitName
+    value: float
+    bound: float
+
+
 class VerdictOut(Wire):
     """What the verdict of method plan rests on."""
 
@@ -92,6 +102,19 @@ class VerdictOut(Wire):
         description="checked; tolerance; or the limit that closes the way, start_rate, or three-axis"
     )
     statement: str
+    what_happens: str | None = Field(
+        default=None,
+        description="Why it is not flown exactly: what happens first and what then; null: it is, or unknown",
+    )
+    first: LimitMetOut | None = Field(default=None, description="The limit that a frame reaches first, and when")
+    then: LimitMetOut | None = Field(
+        default=None,
+        description="What the attitude would need from there; of the same frame, bound is where it is then",
+    )
+    consequence: Consequence | None = Field(default=None, description="Which frame cannot follow from there")
+    closed: BlockingOut | None = Field(default=None, description="Where the search for an exact path came to its end")
+    certainty: Certainty | None = Field(default=None, description="How sure the verdict is")
+    how_sure: str | None = Field(default=None, description="What that rests on, in words")
     grid_deg: float | None = Field(description="Of the search; null where there was none")
     least_tolerance_deg: float | None = Field(
         default=None,

@@ -1,0 +1,137 @@
+"""The exact path that shares one frame's angles with a given path: the self-motion in closed form, by any frame.
+
+Plain NumPy, a stretch of samples at once (mathematics, section 3). The base and the inner frame may be at any angle;
+the outer and the middle one only where sin d2 cos d3 = sin(pitch) leaves the other an angle, whatever the rest do.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fullpose._typing import Array
+from fullpose.charts import TURN
+from fullpose.rig import Rig
+
+BASE, OUTER, MIDDLE, INNER = range(4)
+HALF = math.pi
+NO_POSE = math.radians(0.05)  # short of the nearest angle that has a pose by more, there is none
+ROUNDING = 1e-12
+UNDETERMINED = 1e-9  # a sine or cosine below leaves the other frame open
+_Based = tuple[Array, NDArray[np.bool_], NDArray[np.bool_]]  # d1, whether cos d3 >= 0, whether there is a pose; (n,)
+
+
+@dataclass(frozen=True)
+class HeldFrame:
+    """A stretch with one frame's angles given.
+
+    `angles` (n, 4) [rad] are exact where `exists` (n,); `nearest` (n,) [rad] is the angle next to the given one that
+    has an exact pose at all: the given one where it has.
+    """
+
+    angles: Array
+    exists: NDArray[np.bool_]
+    nearest: Array
+
+
+def held_frame(rig: Rig, attitude: Array, angles: Array, frame: int) -> HeldFrame:
+    """The exact path for attitude (n, 3, 3) with the angles of `frame` from angles (n, 4) [rad], on a four-axis rig.
+
+    Of the two branches the one that lies nearer to the first of these, and continuous from there.
+    """
+    V = _vertical_view(attitude) if rig.geometry.horizontal else attitude
+    nearest = _nearest(V, angles[:, frame], frame)
+    given = np.where(np.abs(nearest - angles[:, frame]) <= NO_POSE, nearest, angles[:, frame])
+    if rig.geometry.horizontal and frame == OUTER:
+        given = -given
+    branches = [_on_branch(rig, V, given, angles[0], frame, branch) for branch in (1.0, -1.0)]
+    found, exists = min(branches, key=lambda each: float(np.abs(each[0][0] - angles[0]).max()))
+    found[:, frame] = angles[:, frame]
+    return HeldFrame(found, exists, nearest)
+
+
+def _on_branch(
+    rig: Rig, V: Array, given: Array, first: Array, frame: int, branch: float
+) -> tuple[Array, NDArray[np.bool_]]:
+    """(angles (n, 4) [rad] from the turns nearest to `first` on, where they exist (n,)) on one branch."""
+    base, upright, exists = _BASE_ANGLE[frame](V, given, branch)
+    found = _base_chart(V, base, np.where(upright, 1.0, -1.0))
+    if rig.geometry.horizontal:
+        found[:, OUTER] *= -1.0
+    return _continuous(found, first), exists
+
+
+def _base_of_base(_V: Array, given: Array, branch: float) -> _Based:
+    return given, np.full(len(given), branch > 0.0), np.ones(len(given), np.bool_)
+
+
+def _base_of_outer(V: Array, given: Array, branch: float) -> _Based:
+    sine = np.sin(given)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cosine = V[:, 0, 1] / sine  # of d3
+    exists = (np.abs(sine) > UNDETERMINED) & (np.abs(cosine) <= 1.0 + ROUNDING)
+    cosine = np.where(exists, np.clip(cosine, -1.0, 1.0), 1.0)
+    return _base(V, cosine * np.cos(given), -branch * np.sqrt(1.0 - cosine**2)), cosine >= 0.0, exists
+
+
+def _base_of_middle(V: Array, given: Array, branch: float) -> _Based:
+    cosine = np.cos(given)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sine = V[:, 0, 1] / cosine  # of d2
+    exists = (np.abs(cosine) > UNDETERMINED) & (np.abs(sine) <= 1.0 + ROUNDING)
+    sine = np.where(exists, np.clip(sine, -1.0, 1.0), 0.0)
+    return _base(V, branch * cosine * np.sqrt(1.0 - sine**2), -np.sin(given)), cosine >= 0.0, exists
+
+
+def _base(V: Array, m00: Array, m02: Array) -> Array:
+    """d1 from the first row of M = V Ry(d1)^T."""
+    return np.arctan2(m02 * V[:, 0, 0] - m00 * V[:, 0, 2], m00 * V[:, 0, 0] + m02 * V[:, 0, 2])
+
+
+def _base_of_inner(V: Array, given: Array, branch: float) -> _Based:
+    c, s = np.cos(given), np.sin(given)
+    n10, n12 = c * V[:, 1, 0] - s * V[:, 2, 0], c * V[:, 1, 2] - s * V[:, 2, 2]
+    n20, n22 = s * V[:, 1, 0] + c * V[:, 2, 0], s * V[:, 1, 2] + c * V[:, 2, 2]
+    base = np.arctan2(branch * n12, -branch * n10)
+    return base, n20 * np.sin(base) + n22 * np.cos(base) >= 0.0, np.ones(len(given), np.bool_)
+
+
+_BASE_ANGLE = (_base_of_base, _base_of_outer, _base_of_middle, _base_of_inner)
+
+
+def _base_chart(V: Array, base: Array, branch: Array) -> Array:
+    """(n, 4) [rad] of the vertical rig from d1 (n,) and the sign of cos d3 (n,)."""
+    c, s = np.cos(base), np.sin(base)
+    m00, m01, m02 = V[:, 0, 0] * c - V[:, 0, 2] * s, V[:, 0, 1], V[:, 0, 0] * s + V[:, 0, 2] * c
+    m10, m20 = V[:, 1, 0] * c - V[:, 1, 2] * s, V[:, 2, 0] * c - V[:, 2, 2] * s
+    outer = np.arctan2(branch * m01, branch * m00)
+    C, S = np.cos(outer), np.sin(outer)
+    inner = np.arctan2(m20 * S - V[:, 2, 1] * C, V[:, 1, 1] * C - m10 * S)
+    return np.stack([base, outer, np.arctan2(-m02, branch * np.hypot(m00, m01)), inner], axis=1)
+
+
+def _continuous(found: Array, first: Array) -> Array:
+    """Angles (n, 4) without jumps of a turn, from the turns nearest to `first` (4,) on."""
+    found = np.unwrap(found, axis=0)
+    return np.asarray(found + TURN * np.rint((first - found[0]) / TURN))
+
+
+def _nearest(V: Array, given: Array, frame: int) -> Array:
+    """The angle (n,) next to `given` (n,) at which the frame leaves the attitude an exact pose."""
+    if frame in (BASE, INNER):
+        return given
+    leaned = np.arcsin(np.clip(np.abs(V[:, 0, 1]), 0.0, 1.0))
+    off = given - HALF * np.rint(given / HALF)  # from where the sine is zero
+    side = np.where(off < 0.0, -1.0, 1.0)
+    if frame == OUTER:
+        return np.asarray(given + side * np.maximum(0.0, leaned - np.abs(off)))
+    return np.asarray(given - side * np.maximum(0.0, np.abs(off) - (0.5 * math.pi - leaned)))
+
+
+def _vertical_view(C: Array) -> Array:
+    """The attitude (n, 3, 3) of a horizontal rig as the vertical one sees it: rows and columns x, z, -y."""
+    turned = C[:, [0, 2, 1]][:, :, [0, 2, 1]]
+    turned[:, 2, :] *= -1.0
+    turned[:, :, 2] *= -1.0
+    return turned
