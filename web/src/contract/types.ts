@@ -26,6 +26,8 @@ export type FlightForm = paths["/api/v1/trajectories"]["post"]["requestBody"]["c
 export type FrameLimits = Omit<Schemas["FrameOut"], "weight">;
 export type FrameName = keyof Schemas["FramesOut"];
 export type Health = Schemas["HealthOut"];
+/** Tags and notes that are put in the place of others; what is left out stays. */
+export type LabelsIn = Schemas["LabelsIn"];
 export type Lease = Schemas["LeaseOut"];
 export type LeaseGiven = Schemas["LeaseGiven"];
 export type LeaseAction = Schemas["LeaseIn"]["action"];
@@ -48,6 +50,8 @@ export type Role = Person["role"];
 export type Run = Schemas["RunOut"];
 export type ScenePoseAt = Schemas["ScenePoseIn"];
 export type ScenePose = Schemas["ScenePoseOut"];
+/** What a list is searched for; null: whatever. */
+export type Searched = Pick<NonNullable<paths["/api/v1/runs"]["get"]["parameters"]["query"]>, "q" | "tag">;
 export type Severity = Schemas["Severity"];
 export type Shelf = Schemas["ShelfOut"];
 export type Snapshot = Schemas["SessionOut"];

@@ -5,10 +5,12 @@ import type {
   CommandBody,
   CommandName,
   ExportFormat,
+  LabelsIn,
   LeaseAction,
   LeaseToken,
   RemedyKind,
   ScenePoseAt,
+  Searched,
   TokenWanted,
   UserChange,
   UserWanted,
@@ -44,7 +46,8 @@ export const api = {
   rigs: () => request("get", "/api/v1/rigs", {}, READ),
   methods: () => request("get", "/api/v1/methods", {}, READ),
 
-  trajectories: (before: string | null = null) => page("/api/v1/trajectories", {}, {}, before, READ.withinMs),
+  trajectories: (before: string | null = null, wanted: Searched = {}) =>
+    page("/api/v1/trajectories", {}, wanted, before, READ.withinMs),
   preview: (sha256: string, points = 800) =>
     request("get", "/api/v1/trajectories/{sha256}/preview", { sha256 }, { ...READ, query: { points } }),
   diagnosis: (sha256: string, rig: string | null = null) =>
@@ -52,10 +55,13 @@ export const api = {
   /** What a tolerance does to a flight; without one, the one that is suggested. */
   tolerance: (sha256: string, tolerance_deg: number | null) =>
     request("get", "/api/v1/trajectories/{sha256}/tolerance", { sha256 }, { ...READ, query: { tolerance_deg } }),
+  labelTrajectory: (sha256: string, body: LabelsIn) =>
+    request("patch", "/api/v1/trajectories/{sha256}", { sha256 }, { ...READ, body }),
   deleteTrajectory: (sha256: string) => request("delete", "/api/v1/trajectories/{sha256}", { sha256 }, READ),
   upload,
 
-  plans: (before: string | null = null) => page("/api/v1/plans", {}, {}, before, READ.withinMs),
+  plans: (before: string | null = null, wanted: Searched = {}) =>
+    page("/api/v1/plans", {}, wanted, before, READ.withinMs),
   plan: (plan: string) => request("get", "/api/v1/plans/{plan}", { plan }, READ),
   planSamples: (plan: string, points = 1200) =>
     request("get", "/api/v1/plans/{plan}/samples", { plan }, { ...READ, query: { points } }),
@@ -65,6 +71,7 @@ export const api = {
   createRemedy: (plan: string, kind: RemedyKind) =>
     request("post", "/api/v1/plans/{plan}/remedies", { plan }, { ...READ, body: { kind } }),
   planExportUrl: (plan: string, format: ExportFormat) => pathTo("/api/v1/plans/{plan}/export", { plan }, { format }),
+  labelPlan: (plan: string, body: LabelsIn) => request("patch", "/api/v1/plans/{plan}", { plan }, { ...READ, body }),
   cancelPlan: (plan: string) => request("delete", "/api/v1/plans/{plan}", { plan }, READ),
 
   comparisons: (before: string | null = null) => page("/api/v1/compare", {}, {}, before, READ.withinMs),
@@ -90,8 +97,10 @@ export const api = {
   stop: (rig: string) => request("post", "/api/v1/rigs/{rig}/stop", { rig }, STOP),
   estop: (rig: string) => request("post", "/api/v1/rigs/{rig}/estop", { rig }, STOP),
 
-  runs: (before: string | null = null) => page("/api/v1/runs", {}, {}, before, READ.withinMs),
+  runs: (before: string | null = null, wanted: Searched = {}) =>
+    page("/api/v1/runs", {}, wanted, before, READ.withinMs),
   run: (run: string) => request("get", "/api/v1/runs/{run}", { run }, READ),
+  labelRun: (run: string, body: LabelsIn) => request("patch", "/api/v1/runs/{run}", { run }, { ...READ, body }),
   deleteRun: (run: string) => request("delete", "/api/v1/runs/{run}", { run }, READ),
   pinRun: (run: string) => request("put", "/api/v1/runs/{run}/pin", { run }, READ),
   unpinRun: (run: string) => request("delete", "/api/v1/runs/{run}/pin", { run }, READ),

@@ -3,7 +3,7 @@ import type { paths, sockets } from "../contract/schema";
 import { ApiError, refusal, silence } from "./errors";
 import { CLIENT_HEADER, me } from "./identity";
 
-type Verb = "get" | "post" | "put" | "delete";
+type Verb = "get" | "post" | "put" | "patch" | "delete";
 type Successes = 200 | 201 | 202 | 204;
 
 /** The paths that have this verb. */

@@ -1,10 +1,22 @@
 /** What the server keeps: rigs, trajectories, methods, runs, and the jobs: plans and comparisons. */
-import type { Comparison, Convention, Health, Method, Plan, RemedyKind, Rig, Run, Trajectory } from "../contract/types";
+import type {
+  Comparison,
+  Convention,
+  Health,
+  LabelsIn,
+  Method,
+  Plan,
+  RemedyKind,
+  Rig,
+  Run,
+  Trajectory,
+} from "../contract/types";
 import type { Api } from "../net/api";
 import { messageOf } from "../net/errors";
 import { backoffMs } from "../net/keptSocket";
 import { Jobs } from "./jobs.svelte";
 import { Pages } from "./pages.svelte";
+import { Search } from "./search.svelte";
 
 export class Library {
   rigs: Rig[] = $state.raw([]);
@@ -19,6 +31,11 @@ export class Library {
   readonly records: Pages<Run>;
   readonly planning: Jobs<Plan>;
   readonly comparisons: Jobs<Comparison>;
+  readonly searches: {
+    readonly flights: Search<Trajectory>;
+    readonly plans: Search<Plan>;
+    readonly runs: Search<Run>;
+  };
 
   /** What could not be read, by what it is. */
   #problems: Readonly<Record<string, string>> = $state.raw({});
@@ -39,8 +56,15 @@ export class Library {
   constructor(private readonly api: Api) {
     const plans = new Jobs<Plan>(api.plans, api.plan);
     const comparisons = new Jobs<Comparison>(api.comparisons, api.comparison);
-    const flights = new Pages<Trajectory>(api.trajectories, ({ sha256 }) => sha256);
-    const records = new Pages<Run>(api.runs, ({ id }) => id);
+    const shaOf = ({ sha256 }: Trajectory): string => sha256;
+    const idOf = ({ id }: { id: string }): string => id;
+    const flights = new Pages<Trajectory>(api.trajectories, shaOf);
+    const records = new Pages<Run>(api.runs, idOf);
+    this.searches = {
+      flights: new Search<Trajectory>(api.trajectories, shaOf),
+      plans: new Search<Plan>(api.plans, idOf),
+      runs: new Search<Run>(api.runs, idOf),
+    };
     this.planning = plans;
     this.flights = flights;
     this.records = records;
@@ -97,19 +121,40 @@ export class Library {
     await this.api.deleteTrajectory(sha256);
     if (this.trajectory === sha256) this.trajectory = null;
     this.flights.drop(sha256);
+    this.searches.flights.drop(sha256);
     await this.flights.refresh();
   }
 
   async deleteRun(id: string): Promise<void> {
     await this.api.deleteRun(id);
     this.records.drop(id);
+    this.searches.runs.drop(id);
     await this.records.refresh();
   }
 
   /** Keeps a run whatever its age, or no longer. */
   async pinRun(id: string, pinned: boolean): Promise<void> {
     await (pinned ? this.api.pinRun(id) : this.api.unpinRun(id));
-    this.records.put(await this.api.run(id));
+    this.#takeRun(await this.api.run(id));
+  }
+
+  /** Puts tags and notes to a flight, a plan or a run. Raises what the request raises. */
+  async labelTrajectory(sha256: string, labels: LabelsIn): Promise<void> {
+    const flight = await this.api.labelTrajectory(sha256, labels);
+    this.flights.put(flight);
+    this.searches.flights.put(flight);
+  }
+
+  async labelPlan(id: string, labels: LabelsIn): Promise<void> {
+    const plan = await this.api.labelPlan(id, labels);
+    this.planning.put(plan);
+    this.searches.plans.put(plan);
+  }
+
+  async labelRun(id: string, labels: LabelsIn): Promise<Run> {
+    const run = await this.api.labelRun(id, labels);
+    this.#takeRun(run);
+    return run;
   }
 
   async upload(file: File, convention: Convention): Promise<Trajectory> {
@@ -120,7 +165,7 @@ export class Library {
         convention,
         (fraction) => (this.uploading = { name: file.name, fraction }),
       );
-      await this.flights.refresh();
+      await Promise.all([this.flights.refresh(), this.searches.flights.refresh()]);
       this.trajectory = stored.sha256;
       this.plan = null;
       return stored;
@@ -156,6 +201,11 @@ export class Library {
   async removeComparison(id: string): Promise<void> {
     await this.api.removeComparison(id);
     await this.comparisons.refresh();
+  }
+
+  #takeRun(run: Run): void {
+    this.records.put(run);
+    this.searches.runs.put(run);
   }
 
   /** Of two reads of one list the one asked for last counts, whichever is answered first. */

@@ -34,3 +34,15 @@ it("a run is pinned, and a pinned one cannot be deleted", async () => {
   expect(console.asked).toContainEqual(["pinRun", "r1"]);
   expect(screen.getByRole<HTMLButtonElement>("button", { name: "Delete the run" }).disabled).toBe(true);
 });
+
+it("runs are searched, also by a tag in the list, and nothing found is said", async () => {
+  const tagged = runOf({ tags: ["north"] });
+  const found = (wanted: { q?: string } | undefined): object => ({ rows: wanted?.q ? [] : [tagged], next: null });
+  const console = new TestConsole({ runs: found });
+  console.show(Runs, {});
+  await fireEvent.click(await screen.findByRole("button", { name: "north" }));
+  expect(console.asked).toContainEqual(["runs", null, { q: null, tag: "north" }]);
+  await fireEvent.input(screen.getByRole("searchbox"), { target: { value: "ben" } });
+  expect(await screen.findByText("Nothing found")).toBeTruthy();
+  expect(console.asked).toContainEqual(["runs", null, { q: "ben", tag: "north" }]);
+});

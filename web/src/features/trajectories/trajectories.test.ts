@@ -33,3 +33,34 @@ it("a diagnosis that fails says why, and the flight is still there", async () =>
   expect((await screen.findByRole("alert")).textContent).toContain("could not be looked at");
   expect(screen.getByRole("button", { name: "Plan and fly" })).toBeTruthy();
 });
+
+it("flights are searched, one that was found is shown, and all are there again", async () => {
+  const other = { ...FLIGHT, sha256: "g", name: "roll", tags: ["north"] };
+  const pages = { rows: [FLIGHT, other], next: null };
+  const found = (wanted: { q?: string } | undefined): object => (wanted?.q ? { rows: [other], next: null } : pages);
+  const console = new TestConsole({ trajectories: found });
+  await console.stores.library.flights.refresh();
+  console.show(Trajectories, {});
+  const field = screen.getByRole("searchbox", { name: "Search flights" });
+  await fireEvent.input(field, { target: { value: "roll" } });
+  await expect.poll(() => screen.queryByRole("button", { name: "loop" })).toBeNull();
+  expect(console.asked).toContainEqual(["trajectories", null, { q: "roll", tag: null }]);
+  expect(screen.getByRole("region", { name: "Flight roll" })).toBeTruthy();
+  await fireEvent.input(field, { target: { value: "" } });
+  expect(await screen.findByRole("button", { name: "loop" })).toBeTruthy();
+});
+
+it("a flight is given a tag, by which others are found", async () => {
+  const tagged = { ...FLIGHT, tags: ["north"] };
+  const console = new TestConsole({ trajectories: { rows: [FLIGHT], next: null }, labelTrajectory: tagged });
+  await console.stores.library.flights.refresh();
+  console.show(Trajectories, {});
+  const field = screen.getByRole<HTMLInputElement>("textbox", { name: "Add a tag" });
+  await fireEvent.input(field, { target: { value: "north" } });
+  await fireEvent.submit(field);
+  expect(console.asked).toContainEqual(["labelTrajectory", "f", { tags: ["north"] }]);
+  await fireEvent.click(await screen.findByRole("button", { name: "north" }));
+  expect(console.asked).toContainEqual(["trajectories", null, { q: null, tag: "north" }]);
+  await fireEvent.click(await screen.findByRole("button", { name: "Any tag" }));
+  await expect.poll(() => screen.queryByRole("button", { name: "Any tag" })).toBeNull();
+});
