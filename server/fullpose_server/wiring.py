@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from fullpose_server.api.deps import Services
+from fullpose_server.api.lapsing import lapse_leases
 from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
@@ -100,6 +101,7 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         stack.callback(services.runs.close)
         services.upkeep.start()
         stack.push_async_callback(services.people.close)
+        services.people.after(partial(lapse_leases, services))
         services.people.start()
         yield served
 

@@ -52,6 +52,11 @@ def test_people_are_made_listed_and_shut_out(tmp_path: Path) -> None:
     assert PASSWORD not in str(lines)
     assert typed("audit", "verify", *there).returncode == 0
     assert token not in typed("token", "list", *there).stdout
+    stays = typed("user", "password", "ANN", "--password-stdin", *there, given=f"{PASSWORD} 2\n")
+    assert "tokens that stay: 1" in stays.stdout
+    ended = typed("user", "password", "ann", "--password-stdin", "--revoke-tokens", *there, given=f"{PASSWORD} 3\n")
+    assert "sessions and tokens have ended" in ended.stdout
+    assert "a script" not in typed("token", "list", *there).stdout
 
 
 def test_a_server_takes_in_what_is_typed_while_it_runs(tmp_path: Path) -> None:

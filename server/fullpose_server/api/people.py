@@ -3,7 +3,7 @@
 import asyncio
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 
 from sqlalchemy.exc import SQLAlchemyError
 
@@ -34,6 +34,7 @@ class People:
         self.admitted = self._seen(store.admitted(asked=asked))
         self._revision = store.revision()
         self._watching: list[Callable[[Admitted], None]] = []
+        self._after: list[Callable[[Admitted], Awaitable[None]]] = []
         self._open: dict[asyncio.Event, tuple[str, Role]] = {}  # of a WebSocket each: credential, what it needs
         self._reading = asyncio.Lock()  # or what was read first could be taken in last
         self._task: asyncio.Task[None] | None = None
@@ -58,6 +59,10 @@ class People:
         """Call `tell` at every change."""
         self._watching.append(tell)
 
+    def after(self, act: Callable[[Admitted], Awaitable[None]]) -> None:
+        """Wait for `act` after every change: once it was taken in, and before who made it is answered."""
+        self._after.append(act)
+
     async def refresh(self) -> None:
         """Take in what was changed. Raises `StorageError`."""
         async with self._reading:
@@ -66,6 +71,9 @@ class People:
             for tell in self._watching:
                 tell(self.may_stop)
             self._end_those_without()
+            admitted = self.admitted
+        for act in self._after:
+            await act(admitted)
 
     def ends_with(self, credential: str, role: Role) -> asyncio.Event:
         """Set when this credential holds no longer, or is less than `role`; to be given back by `forget`."""

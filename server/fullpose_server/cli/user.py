@@ -12,6 +12,7 @@ from fullpose_server.cli._people import DataDir, UserName, changing_people, day,
 
 RoleName = Annotated[str, typer.Option("--role", help="viewer (sees), operator (commands) or admin (people too).")]
 FromStdin = Annotated[bool, typer.Option("--password-stdin", help="Read the password from standard input.")]
+RevokeTokens = Annotated[bool, typer.Option("--revoke-tokens", help="Revoke their tokens too; they stay otherwise.")]
 WithoutPassword = Annotated[bool, typer.Option("--no-password", help="They sign in elsewhere, or by token only.")]
 
 
@@ -74,15 +75,24 @@ def role(name: UserName, role: RoleName, data_dir: DataDir = None, config: Confi
 
 
 def password(
-    name: UserName, password_stdin: FromStdin = False, data_dir: DataDir = None, config: Config = None
+    name: UserName,
+    password_stdin: FromStdin = False,
+    revoke_tokens: RevokeTokens = False,
+    data_dir: DataDir = None,
+    config: Config = None,
 ) -> None:
     """Set a person's password."""
     with changing_people(data_dir, config) as (people, audit):
-        if people.get(name) is None:
+        row = people.get(name)
+        if row is None:
             fail(f"no user named {name!r}")
-        people.set_password(name, _password(password_stdin))
-        audit("password", name)
-    typer.echo(f"{name} has another password, and their sessions have ended")
+        people.set_password(row.name, _password(password_stdin), revoke_tokens=revoke_tokens)
+        audit("password", f"{row.name}: tokens revoked" if revoke_tokens else row.name)
+        left = len(people.tokens(row.name))
+    ended = "their sessions and tokens have ended" if revoke_tokens else "their sessions have ended"
+    typer.echo(f"{row.name} has another password, and {ended}")
+    if left:
+        typer.echo(f"tokens that stay: {left} (--revoke-tokens, or `fullpose token revoke`, ends them)")
 
 
 def disable(name: UserName, data_dir: DataDir = None, config: Config = None) -> None:

@@ -42,8 +42,12 @@ class Shown(NamedTuple):
 class Admitted:
     """The credentials that hold. Where there are no people, whoever reaches the server is let in."""
 
-    def __init__(self, people: bool, credentials: Iterable[Credential] = ()) -> None:
+    def __init__(
+        self, people: bool, credentials: Iterable[Credential] = (), commanders: frozenset[str] | None = None
+    ) -> None:
+        """`commanders`: who may command, signed in or not; None where that is not known, or nobody need sign in."""
         self.people = people
+        self.commanders = commanders
         self._by_proof = {each.proof: each for each in credentials}
         self._ids = {each.id: each for each in self._by_proof.values()}
 

@@ -69,6 +69,7 @@ class LeaseBook:
     heard: float = 0.0  # when the holder was last heard, or when the lease was given up
     asked: tuple[Asked, ...] = ()
     proof: str = field(default="", repr=False)
+    lapsed: bool = False  # nobody holds it since its holder may command no longer
 
     def view(self, now: float) -> Lease:
         """What others may see."""
@@ -89,6 +90,14 @@ class LeaseBook:
         """The holder gives the lease up."""
         self._must_hold(proof)
         return replace(self, holder=None, epoch=self.epoch + 1, sequence=0, heard=now, proof="")
+
+    def lapse(self, holder: str, now: float) -> "LeaseBook":
+        """`holder` may command no longer: as if unheard for `silent_s` now. No change where it is another's by now."""
+        if self.holder != holder:
+            return self
+        asked = tuple(each for each in self.asked if each.who != holder)
+        heard = min(self.heard, now - self.silent_s)
+        return LeaseBook(self.silent_s, None, self.epoch + 1, 0, heard, asked, lapsed=True)
 
     def renew(self, proof: str | None, now: float) -> "LeaseBook":
         """The holder is still there."""

@@ -194,7 +194,18 @@ class SessionMachine(Generic[L, M]):
 
         `to`: to whom it is granted. Raises `LeaseError`.
         """
-        book = self._lease_after(action, who, now, proof, to)
+        return self._take_book(self._lease_after(action, who, now, proof, to), now)
+
+    def lapse(self, holder: str, now: float) -> Lease:
+        """Take the lease from `holder`, who may command no longer: what silence brings about falls due from now on."""
+        return self._take_book(self._lease.lapse(holder, now), now)
+
+    @property
+    def lapsed(self) -> bool:
+        """Whether nobody holds the lease since its holder may command no longer."""
+        return self._lease.lapsed
+
+    def _take_book(self, book: LeaseBook, now: float) -> Lease:
         if (book.epoch, book.asked) != (self._lease.epoch, self._lease.asked):
             self.revision += 1
         self._lease = book

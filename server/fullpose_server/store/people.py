@@ -72,11 +72,12 @@ class PeopleStore:
         disabled: bool | None = None,
         password: str | None = None,
         keep: str | None = None,
+        revoke_tokens: bool = False,
     ) -> UserRow:
         """Another role, shut out or let in again, another password: all of it or nothing.
 
-        With another password every session ends, but that of the id `keep`. Raises `NotFoundError`, `PasswordError`,
-        `PersonError` for the last admin.
+        With another password every session ends, and with `revoke_tokens` every token, but what has the id `keep`.
+        Raises `NotFoundError`, `PasswordError`, `PersonError` for the last admin.
         """
         kept = None if password is None else hashed(password, name)
         with self._changing() as session:
@@ -88,14 +89,15 @@ class PeopleStore:
             row.changed = _next(session)
             if kept is not None:
                 row.password = kept
-                others = _of(row.name).where(CredentialRow.session, CredentialRow.id != (keep or ""))
-                for open_ in session.scalars(others):
-                    _revoke(session, open_)
+            for held in session.scalars(_of(row.name).where(CredentialRow.id != (keep or ""))):
+                ends = kept is not None if held.session else revoke_tokens
+                if ends:
+                    _revoke(session, held)
             return row
 
-    def set_password(self, name: str, password: str, *, keep: str | None = None) -> None:
+    def set_password(self, name: str, password: str, *, keep: str | None = None, revoke_tokens: bool = False) -> None:
         """As `change` does it."""
-        self.change(name, password=password, keep=keep)
+        self.change(name, password=password, keep=keep, revoke_tokens=revoke_tokens)
 
     def rehash(self, name: str, kept: str) -> None:
         """The same password, by a hash that costs more."""
@@ -188,7 +190,9 @@ class PeopleStore:
                 for row in rows
                 if not people[row.user].disabled
             ]
-        return Admitted(asked or bool(people), held)
+            may = (row.name for row in people.values() if not row.disabled and Role(row.role).may(Role.OPERATOR))
+            commanders = frozenset(may) if people else None
+        return Admitted(asked or bool(people), held, commanders)
 
 
 def _role(row: CredentialRow, person: UserRow) -> Role:

@@ -324,6 +324,41 @@ def test_one_changes_ones_own_password(lab: Laboratory) -> None:
         assert done.status_code == 204
         assert gina.get("/rigs").is_success
         assert elsewhere.get("/rigs").status_code == 401
+        token = gina.post("/tokens", json={"label": "a script"}).raise_for_status().json()["id"]
+        body = {"current": "another long sentence", "new": "a third long sentence", "revoke_tokens": True}
+        assert gina.put("/me/password", json=body).status_code == 204
+        assert gina.get("/rigs").is_success
+        assert token not in {each["id"] for each in gina.get("/tokens").json()}
+
+
+@pytest.mark.parametrize("change", [{"disabled": True}, {"role": "viewer"}])
+def test_who_may_command_no_longer_loses_the_lease_at_once_and_the_audit_says_so(
+    lab: Laboratory, change: dict[str, Any]
+) -> None:
+    name = f"otto-{next(iter(change))}"
+    with lab.client("admin") as admin:
+        admin.post("/users", json={"name": name, "role": "operator", "password": PASSWORD}).raise_for_status()
+        with lab.browser(name) as otto:
+            assert otto.post(f"/rigs/{RIG}/lease").raise_for_status().json()["holder"] == name
+        assert (
+            admin.get(f"/rigs/{RIG}/session").json()["lease"]["holder"] == name
+        )  # signed out or not: it lapses by time
+        admin.put(f"/users/{name}", json=change).raise_for_status()
+        assert admin.get(f"/rigs/{RIG}/session").json()["lease"]["holder"] is None
+        lines = admin.get("/audit", params={"rig": RIG}).json()
+    told = next(line for line in lines if line["command"] == "lease lapse")
+    assert (told["who"], told["args"], told["accepted"]) == ("(server)", {"of": name}, True)
+
+
+def test_what_was_typed_for_a_name_and_is_nobodys_is_not_written_down(lab: Laboratory) -> None:
+    with lab.client(None) as stranger:
+        for name in ("hunter2hunter2", "THE-viewer"):
+            assert stranger.post("/login", json={"name": name, "password": "not it at all"}).status_code == 401
+    with lab.client("admin") as admin:
+        lines = admin.get("/audit").json()
+    refused = [line["who"] for line in lines if line["command"] == "login" and not line["accepted"]]
+    assert refused[:2] == ["the-viewer", "(unknown name)"]
+    assert "hunter2" not in str(lines)
 
 
 def test_tokens_are_ones_own(lab: Laboratory) -> None:

@@ -90,3 +90,16 @@ def test_the_view_counts_down_and_shows_no_proof() -> None:
     assert EMPTY.view(0.0).expires_s is None
     for shown in (repr(book), repr(book.view(12.0)), repr(LeaseToken(1, 1, ANNA))):
         assert not any(proof in shown for proof in (ANNA, BERT))
+
+
+def test_the_lease_of_who_may_command_no_longer_is_nobodys_and_silent_already() -> None:
+    anna = EMPTY.take("anna", ANNA, 100.0).request("bert", BERT).request("anna", CARL)
+    free = anna.lapse("anna", 101.0)
+    assert (free.holder, free.epoch, free.silence(101.0)) == (None, anna.epoch + 1, 5.0)
+    assert free.view(101.0).requested_by == ("bert",)
+    assert refusal(free.renew, ANNA, 101.0) == "lease_needed"
+    bert = free.take("bert", BERT, 102.0)
+    assert (bert.holder, bert.lapsed, bert.silence(102.0)) == ("bert", False, 0.0)
+    # Silence that is longer already is not made shorter, and a lease that is another's by now stays theirs.
+    assert anna.lapse("anna", 170.0).silence(170.0) == 70.0
+    assert bert.lapse("anna", 103.0) is bert

@@ -178,6 +178,19 @@ def test_a_silent_owner_is_held_then_stopped_then_disarmed() -> None:
     assert seen == [(6, State.HELD), (16, State.STOPPING), (61, State.READY)]
 
 
+def test_a_holder_who_may_command_no_longer_is_held_at_once_and_stopped_and_disarmed_as_after_a_silence() -> None:
+    session = Session().to(State.RUNNING)
+    machine, begun = session.machine, session.now
+    assert machine.silence(begun) == ()
+    revision = machine.revision
+    assert machine.lapse("anna", begun).holder is None
+    assert (machine.revision, machine.lapsed) == (revision + 1, True)
+    due = [(tenth / 10, event) for tenth in range(1, 600) for event in machine.silence(begun + tenth / 10)]
+    assert due == [(0.1, Event.SILENT_HOLD), (10.1, Event.SILENT_STOP), (55.1, Event.SILENT_DISARM)]
+    machine.lapse("anna", begun + 60.0)
+    assert machine.revision == revision + 1
+
+
 def test_speech_starts_silence_over() -> None:
     session = Session().to(State.RUNNING)
     machine = session.machine

@@ -201,3 +201,39 @@ def test_a_database_of_before_there_were_people_is_its_owners_alone(tmp_path: Pa
     (tmp_path / "fullpose.db").chmod(0o644)
     Database(tmp_path / "fullpose.db").close()
     assert (tmp_path / "fullpose.db").stat().st_mode & 0o777 == 0o600
+
+
+@pytest.mark.parametrize("revoke_tokens", [False, True])
+def test_another_password_ends_the_sessions_and_the_tokens_where_they_are_to_end(
+    people: PeopleStore, revoke_tokens: bool
+) -> None:
+    with_ann(people)
+    people.add("eve", Role.VIEWER, PASSWORD)
+    made = {
+        "session": people.open_session("ann", 1.0, "a browser", None).id,
+        "kept": people.open_session("ann", 1.0, "this browser", None).id,
+        "token": people.make_token("ann", "a script", None, None).id,
+        "other's": people.open_session("eve", 1.0, "a browser", None).id,
+    }
+    people.set_password("ann", f"{PASSWORD} anew", keep=made["kept"], revoke_tokens=revoke_tokens)
+    held = {each.id for each in people.admitted().all()}
+    stay = {"kept", "other's"} if revoke_tokens else {"kept", "other's", "token"}
+    assert {name for name, id_ in made.items() if id_ in held} == stay
+
+
+def test_tokens_are_revoked_without_another_password_too(people: PeopleStore) -> None:
+    with_ann(people)
+    session = people.open_session("ann", 1.0, "a browser", None)
+    people.make_token("ann", "a script", None, None)
+    people.change("ann", revoke_tokens=True)
+    assert [each.id for each in people.admitted().all()] == [session.id]
+
+
+def test_who_may_command_is_known_whether_they_are_signed_in_or_not(people: PeopleStore) -> None:
+    assert people.admitted().commanders is None
+    with_ann(people)
+    people.add("otto", Role.OPERATOR, None)
+    people.add("vic", Role.VIEWER, None)
+    assert people.admitted().commanders == {"ann", "otto"}
+    people.change("otto", disabled=True)
+    assert people.admitted().commanders == {"ann"}

@@ -279,7 +279,7 @@ export interface paths {
         get?: never;
         /**
          * Change Password
-         * @description Change one's own password: every other session of one's own ends.
+         * @description Change one's own password: every other session of one's own ends, and every other token where it is asked for.
          */
         put: operations["change_password_api_v1_me_password_put"];
         post?: never;
@@ -2590,6 +2590,12 @@ export interface components {
             current: string;
             /** New */
             new: string;
+            /**
+             * Revoke Tokens
+             * @description Also every token, but one that asks for it
+             * @default false
+             */
+            revoke_tokens: boolean;
         };
         /**
          * Pause
@@ -4290,8 +4296,16 @@ export interface components {
         UserChange: {
             /** Disabled */
             disabled?: boolean | null;
-            /** Password */
+            /**
+             * Password
+             * @description With another one their sessions end, but one that asks for it
+             */
             password?: string | null;
+            /**
+             * Revoke Tokens
+             * @description Every token of theirs, but one that asks for it
+             */
+            revoke_tokens?: boolean | null;
             /** Role */
             role?: ("viewer" | "operator" | "admin") | null;
         };

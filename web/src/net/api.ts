@@ -33,8 +33,8 @@ export const api = {
   login: (name: string, password: string) =>
     request("post", "/api/v1/login", {}, { ...READ, body: { name, password } }),
   logout: () => request("post", "/api/v1/logout", {}, COMMAND),
-  changePassword: (current: string, next: string) =>
-    request("put", "/api/v1/me/password", {}, { ...READ, body: { current, new: next } }),
+  changePassword: (current: string, next: string, revoke_tokens: boolean) =>
+    request("put", "/api/v1/me/password", {}, { ...READ, body: { current, new: next, revoke_tokens } }),
   tokens: () => request("get", "/api/v1/tokens", {}, READ),
   makeToken: (body: TokenWanted) => request("post", "/api/v1/tokens", {}, { ...READ, body }),
   revokeToken: (token: string) => request("delete", "/api/v1/tokens/{token}", { token }, READ),

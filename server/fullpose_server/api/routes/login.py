@@ -16,6 +16,7 @@ from fullpose_server.people.admitted import COOKIE, Credential, Shown
 from fullpose_server.people.passwords import matches
 
 router = APIRouter(tags=["people"])
+UNKNOWN = "(unknown name)"  # in the audit; no name of a person has a bracket
 WRONG: dict[int | str, dict[str, Any]] = {
     401: {"description": "No such name with this password"},
     409: {"description": "No users are configured"},
@@ -46,7 +47,9 @@ async def login(
         row = await asyncio.to_thread(services.people.store.get, body.name)
         right, anew = await asyncio.to_thread(matches, body.password, None if row is None else row.password)
     if row is None or not right or row.disabled:
-        audit_of_people(services, body.name, "login", address, refused="wrong name or password, or disabled")
+        # People type passwords where the name goes: what is nobody's name is not written down.
+        who = UNKNOWN if row is None else row.name
+        audit_of_people(services, who, "login", address, refused="wrong name or password, or disabled")
         raise ApiError(401, "login", "no such name with this password")
     services.attempts.succeeded(body.name, address)
     if anew is not None:
@@ -69,7 +72,7 @@ async def logout(request: Request, services: ServicesDep, person: PersonDep) -> 
 
 @router.put("/me/password", status_code=204, responses=WRONG)
 async def change_password(request: Request, services: ServicesDep, person: PersonDep, body: PasswordIn) -> None:
-    """Change one's own password: every other session of one's own ends."""
+    """Change one's own password: every other session of one's own ends, and every other token where it is asked for."""
     person = signed_in(person)
     address = address_of(request) or "nowhere"
     _try(services, person.who, address)
@@ -79,9 +82,13 @@ async def change_password(request: Request, services: ServicesDep, person: Perso
         right, _ = await asyncio.to_thread(matches, body.current, None if row is None else row.password)
         if not right:
             raise ApiError(401, "login", "this is not the current password")
-        await changed(services, lambda: store.set_password(person.who, body.new, keep=person.id))
+        await changed(
+            services,
+            lambda: store.set_password(person.who, body.new, keep=person.id, revoke_tokens=body.revoke_tokens),
+        )
     services.attempts.succeeded(person.who, address)
-    audit_of_people(services, person.who, "password", address)
+    about = "tokens revoked" if body.revoke_tokens else None
+    audit_of_people(services, person.who, "password", address, about=about)
 
 
 async def sign_in(services: Services, request: Request, response: Response, name: str, label: str) -> Credential | None:

@@ -42,9 +42,21 @@ async def change_user(
     store = services.people.store
     role = None if body.role is None else Role(body.role)
 
+    def change() -> None:
+        store.change(
+            name,
+            role=role,
+            disabled=body.disabled,
+            password=body.password,
+            keep=admin.id,
+            revoke_tokens=bool(body.revoke_tokens),
+        )
+
     async with services.hashing:
-        await changed(services, lambda: store.change(name, role=role, disabled=body.disabled, password=body.password))
-    told = body.model_dump(exclude_none=True, exclude={"password"}) | ({"password": "another"} if body.password else {})
+        await changed(services, change)
+    told = body.model_dump(exclude_none=True, exclude={"password", "revoke_tokens"})
+    told |= {"password": "another"} if body.password else {}
+    told |= {"tokens": "revoked"} if body.revoke_tokens else {}
     about = f"{name}: {', '.join(f'{key} {value}' for key, value in told.items()) or 'nothing'}"
     audit_of_people(services, admin.who, "user change", address_of(request), about=about)
     return await _found(services, name)

@@ -44,6 +44,7 @@ class PasswordIn(Wire):
 
     current: Password = Field(repr=False)
     new: Password = Field(repr=False)
+    revoke_tokens: Truth = Field(default=False, description="Also every token, but one that asks for it")
 
 
 class UserOut(Wire):
@@ -67,7 +68,10 @@ class UserChange(Wire):
 
     role: RoleName | None = None
     disabled: Truth | None = None
-    password: Password | None = Field(default=None, repr=False)
+    password: Password | None = Field(
+        default=None, repr=False, description="With another one their sessions end, but one that asks for it"
+    )
+    revoke_tokens: Truth | None = Field(default=None, description="Every token of theirs, but one that asks for it")
 
 
 class TokenIn(Wire):

@@ -18,6 +18,7 @@ class Op(StrEnum):
 
     COMMAND = "command"  # of the session
     LEASE = "lease"
+    LAPSE = "lapse"  # of the lease of `who`, who may command no longer
     LIVE = "live"  # whether its key is that of the live source that is loaded
     EXIT = "exit"
 

@@ -68,6 +68,8 @@ class CommandHandler:
                     self._command(request, now)
                 case Op.LEASE:
                     lease = self._lease(request, now)
+                case Op.LAPSE:
+                    lease = machine.lapse(request.who, now)
                 case Op.LIVE:
                     self._check_key(request.key or "")
                 case Op.EXIT:

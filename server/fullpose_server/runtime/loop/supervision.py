@@ -56,7 +56,8 @@ class Supervision:
         if self._parts.state.ticks % _SLOWLY or (machine.state not in IN_MOTION and machine.state is not State.ARMED):
             return
         for event in machine.silence(now):
-            yield Silent(WarningCode.OWNER_SILENT, "the lease's holder is silent", event)
+            told = "may command no longer" if machine.lapsed else "is silent"
+            yield Silent(WarningCode.OWNER_SILENT, f"the lease's holder {told}", event)
         beat = int(self._parts.shared.header["server_beat_ns"][0]) / 1e9
         for event in self._server_silence.due(now - beat):
             yield Silent(WarningCode.SERVER_SILENT, "the server is silent", event)

@@ -90,6 +90,10 @@ class RigHost:
             raise RefusedError(answer.reply)
         return answer.lease
 
+    async def lapse(self, holder: str) -> messages.Reply:
+        """Take the lease from `holder`, who may command no longer; what they fly ends as after a silence, now."""
+        return (await self._ask(Request(0, Op.LAPSE, holder))).reply
+
     async def prove_live(self, who: str, key: str) -> messages.Reply:
         """Whether `key` is that of the live source that is loaded: a refusal is a reply."""
         return (await self._ask(Request(0, Op.LIVE, who, key=key))).reply

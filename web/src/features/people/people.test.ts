@@ -100,9 +100,10 @@ describe("the account", () => {
     await press("Change the password");
     await expect.poll(() => screen.queryByRole("alert")?.textContent).toContain("not the current password");
     answers["changePassword"] = undefined;
+    await fireEvent.click(screen.getByRole("checkbox", { name: "Revoke my tokens too" }));
     await press("Change the password");
-    expect((await screen.findByRole("status")).textContent).toContain("Changed");
-    expect(asked(console, "changePassword").at(-1)).toEqual(["old", "a new sentence"]);
+    expect((await screen.findByRole("status")).textContent).toContain("tokens are revoked");
+    expect(asked(console, "changePassword").at(-1)).toEqual(["old", "a new sentence", true]);
     expect(asked(console, "me")).toEqual([]); // a wrong password is no sign-out
   });
 
