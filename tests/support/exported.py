@@ -42,7 +42,7 @@ def _mdf(path: Path) -> Columns:
     with MDF(path) as file:
         names = [channel.name for channel in file.groups[0].channels]
         signals = {name: file.get(name, group=0) for name in names}
-        found = {name: signal.samples for name, signal in signals.items() if name != "time"}
+        found = {name: signal.samples for name, signal in signals.items() if name not in ("time", "time_s")}
         text = {n: np.char.decode(v, "utf-8") if v.dtype.kind == "S" else v for n, v in found.items()}
         return text | {"time_s": next(iter(signals.values())).timestamps}
 

@@ -8,12 +8,21 @@ from asammdf import MDF, Signal
 
 from fullpose_server.formats.exporters.table import ExportTable, Values, unit_of
 
+MASTER = ("time_s", 1)  # the master channel's name; 1: it is a time
+
 
 def write(table: ExportTable, target: Path) -> None:
     """Write it; what is known of the table is the group's comment."""
     time = np.ascontiguousarray(table.columns["time_s"], dtype=np.float64)
     signals = [
-        Signal(samples=_samples(values), timestamps=time, name=name, unit=unit_of(name), encoding="utf-8")
+        Signal(
+            samples=_samples(values),
+            timestamps=time,
+            name=name,
+            unit=unit_of(name),
+            encoding="utf-8",
+            master_metadata=MASTER,
+        )
         for name, values in table.columns.items()
         if name != "time_s"
     ]

@@ -1,6 +1,7 @@
 """Columns as every importer hands them over, and how many of them it may read."""
 
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,10 +12,12 @@ from fullpose_server.errors import FileError
 
 @dataclass(frozen=True)
 class Bounds:
-    """How much of a table is read: what has more is refused before it is."""
+    """How much of a table is read, what has more is refused before it is; and who is told how far that is."""
 
     rows: int
     columns: int
+    bytes: int = sys.maxsize  # that a packed file may unpack to
+    progress: Callable[[int, int], None] | None = None  # (done, of all) in whatever unit, for a person who waits
 
 
 UNBOUNDED = Bounds(sys.maxsize, sys.maxsize)  # a person's own machine, a person's own file

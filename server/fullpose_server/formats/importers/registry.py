@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
+import fullpose_server.formats.importers.log_signatures as logs
 from fullpose_server.errors import FileError
 from fullpose_server.formats.importers import signatures
 from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds
@@ -44,6 +45,17 @@ class Importer:
 
 IMPORTERS: tuple[Importer, ...] = (
     Importer("parquet", "Parquet", lambda head: head.data.startswith(signatures.PARQUET), "parquet"),
+    Importer("ulog", "PX4 ULog", lambda head: head.data.startswith(logs.ULOG), "ulog", "px4"),
+    Importer("dataflash", "ArduPilot log", lambda head: head.data.startswith(logs.DATAFLASH), "dataflash", "ardupilot"),
+    Importer("mcap", "MCAP", lambda head: head.data.startswith(logs.MCAP), "mcap"),
+    Importer("rosbag1", "ROS 1 bag", lambda head: head.data.startswith(logs.ROSBAG), "rosbag1", "ros"),
+    Importer("rosbag2", "ROS 2 bag", lambda head: head.data.startswith(logs.SQLITE), "rosbag2", "ros"),
+    Importer("matlab", "MATLAB 5", lambda head: head.data.startswith(logs.MATLAB_5), "matlab"),
+    Importer("hdf5", "HDF5", lambda head: logs.is_hdf5(head.data), "hdf5", "hdf5"),
+    Importer("tdms", "TDMS", lambda head: head.data.startswith(logs.TDMS), "tdms", "tdms"),
+    Importer("mdf", "MDF", lambda head: head.data.startswith(logs.MDF), "mdf", "mdf"),
+    Importer("excel", "Excel", lambda head: logs.is_workbook(head.data), "excel", "excel"),
+    Importer("tlog", "MAVLink tlog", lambda head: logs.is_tlog(head.data), "tlog", "ardupilot"),
     # Further binary formats go here, before text.
     Importer("csv", "CSV text", lambda head: signatures.is_text(head.data), "csv"),
 )

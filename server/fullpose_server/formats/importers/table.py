@@ -48,6 +48,7 @@ class Table:
     header_line: int | None = None  # where the names are
     profile: str | None = None  # the named profile that this format's columns have, where the format fixes them
     cautions: tuple[Caution, ...] = ()
+    on_request: bool = False  # not the attitude that such a file is of: read where a person names it as the source
     head: tuple[tuple[str, ...], ...] = ()  # the first rows as text, for a person to look at; cells as `names`
 
     def unit(self, name: str) -> str | None:
