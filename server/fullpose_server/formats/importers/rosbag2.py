@@ -19,7 +19,7 @@ def read_tables(path: Path, file: str, bounds: Bounds = UNBOUNDED) -> tuple[Tabl
     """A table each topic with an attitude. Raises `FileError`, `TooLargeError`."""
     topics = Topics(file, "rosbag2", bounds)
     with (
-        whole(file, ABOUT),
+        parsing(file, ABOUT),
         closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro&immutable=1", uri=True)) as bag,
     ):
         told = []
