@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fullpose_server.errors import FileError
 from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds
+from fullpose_server.formats.importers.parsing import parsing
 from fullpose_server.formats.importers.ros_messages import decoder_of
 from fullpose_server.formats.importers.table import Table
 from fullpose_server.formats.importers.topics import Topics
