@@ -33,3 +33,7 @@ class MethodError(SolverError):
 
 class CancelledError(SolverError):
     """The caller's progress callback asked to stop."""
+
+
+class OutOfTimeError(CancelledError):
+    """The caller's progress callback gives up one trial of a search: it counts as one that does not do."""

@@ -11,6 +11,7 @@ class Decision(StrEnum):
     POSITION = "position"  # no node path, for want of range
     RATE = "rate"  # no node path, for want of rate
     ACCELERATION = "acceleration"  # node paths, but none that was refined came inside the limits
+    BEYOND = "beyond"  # the attitude accelerates more than all frames together can
     START_RATE = "start_rate"  # nothing that was found takes up the start rate
     THREE_AXIS = "three-axis"  # no choice on a three-axis rig but the Euler set and its turns
 
@@ -18,6 +19,7 @@ class Decision(StrEnum):
 class RemedyKind(StrEnum):
     """What may be changed to make a flight fit a rig."""
 
+    TOLERANCE = "tolerance"
     SLOW_DOWN = "slow_down"
     HEADING_OFFSET = "heading_offset"
     MOUNTING_OFFSET = "mounting_offset"

@@ -8,11 +8,12 @@ from typing import Annotated
 import typer
 
 from fullpose.vocabulary import RemedyKind
-from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, command
+from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, ToleranceDeg, command
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import OUT_KINDS, check_outputs
 from fullpose_server.cli._progress import progress_bar
+from fullpose_server.cli._tolerance import within
 
 
 def register(app: typer.Typer) -> None:
@@ -35,6 +36,7 @@ class RemedyArguments:
     limit: Annotated[str | None, typer.Option(help="relax: of position, rate or acceleration alone.")] = None
     start: StartPose = None
     convention: ConventionName = "nue"
+    tolerance: ToleranceDeg = None
 
 
 def remedy(asked: RemedyArguments) -> None:
@@ -46,7 +48,7 @@ def remedy(asked: RemedyArguments) -> None:
     from fullpose_server.formats.report import make_report, margins_report, verdict_report
     from fullpose_server.formats.rig_file import find_rig
     from fullpose_server.formats.solution_file import write_solution
-    from fullpose_server.planning.remedy import find_remedy
+    from fullpose_server.planning.remedy import find_remedy, refuse_noise, tolerated
     from fullpose_server.planning.remedy_request import RemedyRequest
 
     flight, kind = asked.flight, asked.kind
@@ -56,9 +58,14 @@ def remedy(asked: RemedyArguments) -> None:
     check_outputs({"--out": asked.out, "--report": asked.report}, flight, asked.rig)
     read = read_flight(flight, asked.convention, chosen, asked.start)
     attitude = dcm_from_quaternion(read.q)
+    told = within(read, attitude, asked.tolerance)
     with progress_bar(kind) as progress:
         try:
-            found = find_remedy(request, read.time, attitude, chosen, start=read.start, progress=progress)
+            refuse_noise(request, told.flight.time, told.attitude, chosen)
+            found = find_remedy(
+                request, told.flight.time, told.attitude, chosen, start=read.start, progress=progress,
+                smoothed=told.smoothed,
+            )  # fmt: skip
         except NoRemedyError as error:
             fail(f"{flight}: {error}", NOT_FEASIBLE)
     done = found.remedy
@@ -67,6 +74,8 @@ def remedy(asked: RemedyArguments) -> None:
     made.update(verdict_report(done.plan))
     made["margins"] = margins_report(done.plan.margins, done.rig)
     made["remedy"] = found.described
+    if kind == RemedyKind.TOLERANCE and found.described["value"]:
+        made.update(tolerated(found.described))
     with progress_bar("write") as progress:
         write_solution(asked.out, done.plan.solution, progress)
     if asked.report is not None:

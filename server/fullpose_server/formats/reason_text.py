@@ -7,18 +7,22 @@ from fullpose.rig import Limit
 from fullpose.vocabulary import Consequence
 
 if TYPE_CHECKING:
+    from fullpose.plan.impossible import Beyond
     from fullpose.plan.reason import Needed, Reached, Reason
+    from fullpose.plan.verdict import Verdict
     from fullpose.solution import Blocking
 
 UNITS = {"position": "deg", "rate": "deg/s", "acceleration": "deg/s^2"}
 
 
-def reason_report(reason: "Reason | None", closed: "Blocking | None") -> dict[str, Any]:
+def reason_report(verdict: "Verdict") -> dict[str, Any]:
     """`what_happens` in words and its figures, `first`, `then`, `consequence` [deg, s]; null where unknown."""
+    reason, beyond = verdict.reason, verdict.beyond
     if reason is None:
-        return {"what_happens": None, "first": None, "then": None, "consequence": None}
+        told = None if beyond is None else attitude_beyond(beyond)
+        return {"what_happens": told, "first": None, "then": None, "consequence": None}
     return {
-        "what_happens": what_happens(reason, closed),
+        "what_happens": what_happens(reason, verdict.closed),
         "first": _figures(reason.first),
         "then": None if reason.then is None else _figures(reason.then),
         "consequence": reason.consequence,
@@ -33,6 +37,14 @@ def _figures(told: "Reached | Needed") -> dict[str, Any]:
         "value": math.degrees(told.value),
         "bound": math.degrees(told.bound),
     }
+
+
+def attitude_beyond(beyond: "Beyond") -> str:
+    """That no frame is first: the attitude itself cannot be had."""
+    return (
+        f"at {beyond.time:.3f} s the attitude itself would accelerate by {_number(beyond.needed)} deg/s^2, and all "
+        f"frames together can give it {_number(beyond.most)} deg/s^2 at most"
+    )
 
 
 def what_happens(reason: "Reason", closed: "Blocking | None" = None) -> str:

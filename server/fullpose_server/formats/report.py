@@ -97,7 +97,7 @@ def verdict_report(plan: "Plan") -> dict[str, Any]:
         "verdict": {
             "decided_by": verdict.decided_by,
             "statement": verdict.statement,
-            **reason_report(verdict.reason, verdict.closed),
+            **reason_report(verdict),
             "closed": _blocking(verdict.closed),
             "certainty": verdict.certainty,
             "how_sure": verdict.how_sure,

@@ -14,6 +14,7 @@ from fullpose.compare import EXACT_WITHIN
 from fullpose.errors import MethodError
 from fullpose.lead import lead_in, lead_out
 from fullpose.plan import Plan
+from fullpose.plan.recorded_noise import recorded_noise
 from fullpose.plan.verdict import margins
 from fullpose.recorded import Smoothed, smooth
 from fullpose.registry import method_options
@@ -22,13 +23,14 @@ from fullpose.rig import Rig
 from fullpose.solution import Solution
 from fullpose.solve import solve_flight
 from fullpose.verify import verify
+from fullpose.vocabulary import RemedyKind
 from fullpose_server.formats.flight_folder import read_arrays
 from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan, rig_hash, write_plan
 from fullpose_server.formats.report import exceeds, make_report, margins_report, verdict_report, why_infeasible
 from fullpose_server.formats.tolerance_report import judged, tolerance_radians, tolerance_report, without_tolerance
 from fullpose_server.planning.plan_request import PlanRequest
 from fullpose_server.planning.remaining_tolerance import with_remaining
-from fullpose_server.planning.remedy import find_remedy
+from fullpose_server.planning.remedy import find_remedy, refuse_noise, tolerated
 from fullpose_server.planning.remedy_request import RemedyRequest
 
 Progress = Callable[[str, int, int], None]  # phase, done, total
@@ -46,6 +48,8 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     request = PlanRequest.from_json(values)
     progress("resample", 0, 1)
     given = _given(request)
+    if request.remedy is not None:
+        refuse_noise(_asked(request.remedy), given.time, dcm_from_quaternion(given.q), request.rig)
     flight = resample(given.time, given.q, request.rate_hz)
     if flight.time.size < 2:
         flight = _held(flight, request.rate_hz)
@@ -58,6 +62,8 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     if made.planned is not None:
         report |= verdict_report(made.planned)
     report = given.reported(report)
+    if made.remedy.get("kind") == RemedyKind.TOLERANCE and made.remedy["value"]:
+        report |= tolerated(made.remedy)
     refusal = why_infeasible(report)
     before, after = _NONE, _NONE
     if refusal is None:
@@ -103,7 +109,13 @@ def _sum(error_deg: float | None, deviation_deg: float) -> float | None:
 def _given(request: PlanRequest) -> _Given:
     time_s, q = (np.array(column) for column in read_arrays(request.trajectory))
     if request.tolerance_deg is None:
-        return _Given(time_s, q, None, None)
+        noise = None
+        if request.remedy is not None and _asked(request.remedy).kind == RemedyKind.TOLERANCE:
+            noise = recorded_noise(time_s, dcm_from_quaternion(q))
+        if noise is None:
+            return _Given(time_s, q, None, None)
+        smoothed = smooth(time_s, dcm_from_quaternion(q), noise.suggested, noise.diagnosis)
+        return _Given(np.array(smoothed.time), np.array(smoothed.q), None, smoothed)
     smoothed = smooth(time_s, dcm_from_quaternion(q), tolerance_radians(request.tolerance_deg))
     return _Given(np.array(smoothed.time), np.array(smoothed.q), request.tolerance_deg, smoothed)
 
@@ -145,7 +157,7 @@ def _solve(request: PlanRequest, smoothed: Smoothed | None, flight: Resampled, p
 
     clock = time.perf_counter
     if request.remedy is not None:
-        return _remedied(request, at, attitude, start, options, tell)
+        return _remedied(request, at, attitude, start, options, smoothed, tell)
     solved = solve_flight(
         at, attitude, request.rig, method=request.method, options=options, start=start, clock=clock, progress=tell
     )
@@ -156,24 +168,29 @@ def _solve(request: PlanRequest, smoothed: Smoothed | None, flight: Resampled, p
     return _Made(solution, q, verdict, lambda: _leads(solution))
 
 
+def _asked(remedy: dict[str, Any]) -> RemedyRequest:
+    return RemedyRequest(remedy["kind"], remedy.get("frame"), remedy.get("limit"))
+
+
 def _remedied(
     request: PlanRequest,
     at: Array,
     attitude: Array,
     start: Array | None,
     options: Any,
+    smoothed: Smoothed | None,
     tell: Callable[[int, int], None],
 ) -> _Made:
     """The flight, changed until it fits; solved by the planner whatever the method of the plan it is a remedy of."""
-    asked = request.remedy or {}
     found = find_remedy(
-        RemedyRequest(asked["kind"], asked.get("frame"), asked.get("limit")),
+        _asked(request.remedy or {}),
         at,
         attitude,
         request.rig,
         start=start,
         options=options,
         progress=tell,
+        smoothed=smoothed,
     )
     plan = found.remedy.plan
     q = continuous(quaternion_from_dcm(found.remedy.attitude))

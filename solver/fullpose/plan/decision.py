@@ -7,8 +7,13 @@ import numpy as np
 
 from fullpose._typing import Array, Codes, Counts
 from fullpose.bounds import MET, limited_code
+from fullpose.methods.start_pose import start_pose
+from fullpose.plan.active_limits import active_limits
+from fullpose.plan.fallback import EXACT_ERROR, Fallback
+from fullpose.plan.impossible import beyond_all_frames
 from fullpose.plan.least_tolerance import BRIEF, LeastTolerance, least_tolerance
 from fullpose.plan.node_paths import cheapest
+from fullpose.plan.recorded_noise import recorded_noise
 from fullpose.plan.strategies import State, Task, first_look, refined, search
 from fullpose.plan.three_axis import three_axis_path
 from fullpose.rig import FRAMES, LIMITS, Limit
@@ -16,11 +21,13 @@ from fullpose.solution import Blocking
 from fullpose.trajectory.constraints import largest_violation, rig_limits
 from fullpose.trajectory.problem import Problem
 from fullpose.trajectory.windows import Path, smooth_curve
+from fullpose.verify import attitude_errors, payload_attitudes
 from fullpose.vocabulary import Decision
 
 STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a flight without a node path
 VIOLATION_COST = 100.0  # that price: the cost of going over a rate limit by its whole
 WIDENED = 0.5  # [rad] that ranges are widened by where even that finds none
+SAME_STAMP = 1e-9  # [s]
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
 
 # Which limit closed the last stage, and what decided then: only the inertia of a start rate closes by acceleration.
@@ -49,6 +56,8 @@ class Flown:
 
 def fly(task: Task) -> Flown:
     """A path of a four-axis rig, found by the table of attempts; else the least tolerance."""
+    if (beyond := beyond_all_frames(task.problem.time, task.problem.attitude, task.problem.rig)) is not None:
+        return _beyond(task, beyond.time)
     state = first_look(task)
     if state.cheapest.found:
         state = search(task, state)
@@ -57,6 +66,42 @@ def fly(task: Task) -> Flown:
     if state.best is not None:
         return _outside(task, state, state.best)
     return _without_node_path(task, state)
+
+
+def _beyond(task: Task, when: float) -> Flown:
+    """No path exists, nor is one looked for: the flight behind its noise where that fits, or the least tolerance."""
+    problem, n = task.problem, len(task.problem)
+    most = int(np.argmax(np.where(problem.rig.axes >= 0, problem.rig.max_acceleration, -1.0)))
+    failed = Flown(
+        np.repeat(problem.rig.home[None], n, axis=0), np.zeros(n, np.int32),
+        np.full(n, limited_code(most, LIMITS.index(Limit.ACCELERATION)), np.int16), Decision.BEYOND,
+        Blocking(when, FRAMES[most], Limit.ACCELERATION),
+    )  # fmt: skip
+    if not problem.options.best_effort:
+        return failed
+    least = _behind_noise(task) or least_tolerance(problem, [task.fallback.exact], task.progress)
+    return _given_up(problem, failed, least)
+
+
+def _behind_noise(task: Task) -> LeastTolerance | None:
+    """The plan of the flight behind its noise, where its stamps may stay and it fits: its error is the noise."""
+    problem = task.problem
+    smoothed = recorded_noise(problem.time, problem.attitude) if problem.start_rate is None else None
+    if smoothed is None or np.abs(smoothed.time - problem.time).max() > SAME_STAMP:
+        return None
+    start = None if problem.start is None else start_pose(problem.rig, smoothed.attitude[0], problem.start)[0]
+    options = replace(problem.options, best_effort=False)
+    behind = replace(problem, attitude=np.array(smoothed.attitude), start=start, options=options)
+    state = first_look(Task(behind, Fallback(behind), task.progress))
+    if state.cheapest.found:
+        state = search(Task(behind, Fallback(behind), task.progress), state)
+    if state.flown is None:
+        return None
+    angles = state.flown.angles
+    error, _ = attitude_errors(payload_attitudes(problem.rig, angles), problem.attitude)
+    missed = error > EXACT_ERROR
+    limited = active_limits(problem.time, problem.attitude, angles, problem.rig, missed)
+    return LeastTolerance(angles, limited, float(error.max()))
 
 
 def _inside(state: State, angles: Array, path: Path) -> Flown:

@@ -14,6 +14,7 @@ from fullpose.methods.start_pose import start_pose
 from fullpose.plan.beam_path import attainable_rates
 from fullpose.plan.decision import Flown, fly, fly_three_axis
 from fullpose.plan.fallback import EXACT_ERROR, Fallback
+from fullpose.plan.impossible import beyond_all_frames
 from fullpose.plan.reason import reason_of
 from fullpose.plan.strategies import Task
 from fullpose.plan.verdict import Margins, Verdict, check, margins, verdict_on, with_least_tolerance, with_reason
@@ -135,6 +136,8 @@ def _finished(problem: Problem, flown: Flown, stopwatch: Clock) -> Plan:
 
 def _explained(problem: Problem, verdict: Verdict, angles: Array, error: Array) -> Verdict:
     """The verdict with what happens first along the angles, and what then."""
+    if verdict.decided_by is Decision.BEYOND:
+        return replace(verdict, beyond=beyond_all_frames(problem.time, problem.attitude, problem.rig))
     closed = -math.inf
     if verdict.closed is not None and problem.rig.geometry.redundant:
         closed = verdict.closed.time

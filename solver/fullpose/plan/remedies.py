@@ -1,14 +1,14 @@
-"""What would make a flight fit: flying it slower, turning it by a constant, or raising one limit.
+"""What would make a flight fit: a tolerance, flying it slower, turning it by a constant, or raising one limit.
 
 Each remedy is a search over plans and returns the one it ends with, ready to fly: the ways from rest and back to rest
 count, too. The trials skip the least-error path of an infeasible flight and, where the samples are dense, look at every
-few of them; what is returned is planned anew from all of them. `progress(done, total)` counts trials and may raise
-`CancelledError`.
+few of them; what is returned is planned anew from all of them (`fullpose.plan.remedy`). A search by halves assumes that
+a flight which fits goes on fitting as the factor grows; larger ones are looked at too, and one that fails is told.
 """
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 from fullpose._typing import Array, Progress
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_dcm
 from fullpose.errors import InputError
-from fullpose.plan.plan import Plan, plan
+from fullpose.plan.remedy import NOTHING, Remedy, Trials
+from fullpose.plan.tolerance_remedy import least_change
 from fullpose.plan.verdict import Margins
 from fullpose.resample import continuous, resample
 from fullpose.rig import FRAMES, LIMITS, FrameLimits, Rig
@@ -24,66 +25,18 @@ from fullpose.trajectory.curve import LOCKED
 from fullpose.trajectory.options import PlanOptions
 from fullpose.vocabulary import RemedyKind
 
-TRIAL_INTERVAL = 0.005  # [s] between the samples that a trial looks at
 LARGEST_RAISE = 8.0  # times a rate or acceleration limit
+SLOW_TRIALS = 20  # at most: 8 up to 16 times, 6 halvings, 2 beyond, 4 of every sample
+RELAX_TRIALS = 10  # of one limit at most
 RELATIVE = 0.01  # to which factors are found
-NOTHING = "nothing"  # what is changed of a flight that fits as it is, where limits are raised
+BEYOND = (
+    1.3,
+    1.8,
+)  # times the factor that was found: looked at too, for a flight that fits slower need not fit slower still
+AGAIN = (1.01, 1.05, 1.15)  # times it, where the thinned samples did not show what is wrong
 AXES = ("roll", "yaw", "pitch")  # of the body's x, y, z
 UP = AXES[1]
 OFFSETS = (RemedyKind.HEADING_OFFSET, RemedyKind.MOUNTING_OFFSET)
-
-
-@dataclass(frozen=True)
-class Remedy:
-    """A remedy: what was changed and by how much, and the flight, rig and plan that come of it.
-
-    `value` is the factor on the time of a slow-down; an offset's angle [rad], `what` being the axis; or the new limit,
-    `what` being frame and limit (`NOTHING`, value 0, where none need be raised). `plan.ready` says whether it suffices.
-    """
-
-    kind: RemedyKind
-    what: str
-    value: float
-    time: Array  # (n,) [s]
-    attitude: Array  # (n, 3, 3)
-    rig: Rig
-    plan: Plan
-
-
-@dataclass
-class _Trials:
-    """Counts trials for the progress callback and plans them."""
-
-    total: int
-    progress: Progress | None
-    options: PlanOptions
-    start: ArrayLike | None
-    done: int = 0
-
-    @property
-    def quick(self) -> PlanOptions:
-        """The options of a trial."""
-        return replace(self.options, best_effort=False, alternatives=min(2, self.options.alternatives))
-
-    def feasible(self, time: Array, attitude: Array, rig: Rig) -> Plan:
-        """A trial: a plan without best effort, on the thinned samples."""
-        self.done += 1
-        if self.progress is not None:
-            self.progress(min(self.done, self.total), self.total)
-        part = slice(None, None, _stride(time))
-        return plan(time[part], attitude[part], rig, self.start, options=self.quick)
-
-    def final(self, time: Array, attitude: Array, rig: Rig) -> Plan:
-        """The plan that is returned, from every sample."""
-        made = plan(time, attitude, rig, self.start, options=self.options)
-        if self.progress is not None:
-            self.progress(self.total, self.total)
-        return made
-
-
-def _stride(time: Array) -> int:
-    n = len(time)
-    return max(1, int(TRIAL_INTERVAL * (n - 1) / (time[-1] - time[0]))) if n > 16 else 1
 
 
 def slow_down(
@@ -96,10 +49,10 @@ def slow_down(
     Raises `CancelledError` from progress, `InputError` as `plan` does.
     """
     t, C = np.asarray(time, float), np.asarray(attitude, float)
-    trials = _Trials(2 + math.ceil(math.log2(largest)) + 8, progress, options or PlanOptions(), start)
+    trials = Trials(SLOW_TRIALS, progress, options or PlanOptions(), start)
 
     def fits(factor: float) -> bool:
-        return trials.feasible(t[0] + (t - t[0]) * factor, C, rig).ready
+        return trials.fits(t[0] + (t - t[0]) * factor, C, rig)
 
     high = 1.0
     low = 1.0
@@ -110,14 +63,18 @@ def slow_down(
     while high / low > 1.0 + RELATIVE:
         middle = math.sqrt(high * low)
         low, high = (low, middle) if fits(middle) else (middle, high)
+    fails = next(
+        (high * more for more in BEYOND if high > 1.0 and high * more <= largest and not fits(high * more)), None
+    )
     remedy = _slowed(trials, t, C, rig, high)
-    while not remedy.plan.ready and high < largest:  # what the thinned samples did not show
-        high *= 1.0 + RELATIVE
-        remedy = _slowed(trials, t, C, rig, high)
-    return remedy
+    for more in AGAIN:
+        if remedy.plan.ready or high * more > largest:
+            break
+        remedy = _slowed(trials, t, C, rig, high * more)
+    return replace(remedy, fails_again=fails, given_up=trials.given_up)
 
 
-def _slowed(trials: _Trials, t: Array, C: Array, rig: Rig, factor: float) -> Remedy:
+def _slowed(trials: Trials, t: Array, C: Array, rig: Rig, factor: float) -> Remedy:
     """The flight in `factor` times its time, at its own sample rate (by quaternion spline), planned."""
     slow = t[0] + (t - t[0]) * factor
     if factor == 1.0 or len(t) < 3:
@@ -160,11 +117,11 @@ def offset(
     t, C = np.asarray(time, float), np.asarray(attitude, float)
     axes = (UP,) if kind == RemedyKind.HEADING_OFFSET else AXES
     count = max(2, round(2.0 * math.pi / step))
-    trials = _Trials(1 + len(axes) * (count - 1) + 4 + 1, progress, options or PlanOptions(), start)
+    trials = Trials(1 + len(axes) * (count - 1) + 4 + 1, progress, options or PlanOptions(), start)
 
     def room(axis: str, angle: float) -> float:
         made = trials.feasible(t, turned(C, kind, axis, angle), rig)
-        return smallest_share(made.margins, rig) if made.ready else -math.inf
+        return smallest_share(made.margins, rig) if made is not None and made.ready else -math.inf
 
     best = (room(axes[0], 0.0), axes[0], 0.0)
     for axis in axes:
@@ -179,8 +136,9 @@ def offset(
     _, axis, angle = best
     attitude_there = turned(C, kind, axis, angle)
     return Remedy(
-        kind, axis, math.remainder(angle, 2.0 * math.pi), t, attitude_there, rig, trials.final(t, attitude_there, rig)
-    )
+        kind, axis, math.remainder(angle, 2.0 * math.pi), t, attitude_there, rig,
+        trials.final(t, attitude_there, rig), given_up=trials.given_up,
+    )  # fmt: skip
 
 
 def smallest_share(margins: Margins, rig: Rig) -> float:
@@ -214,17 +172,17 @@ def relax(
         raise InputError("limit", None, limit, f"one of {', '.join(LIMITS)}")
     t, C = np.asarray(time, float), np.asarray(attitude, float)
     candidates = [(i, kind) for i, kind in _limits(rig) if frame in (None, FRAMES[i]) and limit in (None, LIMITS[kind])]
-    trials = _Trials(len(candidates) * 10 + 1, progress, options or PlanOptions(), start)
-    found: list[tuple[float, int, int]] = []
-    if trials.feasible(t, C, rig).ready:
+    trials = Trials(len(candidates) * RELAX_TRIALS + 1, progress, options or PlanOptions(), start)
+    found: list[tuple[float, int, int, float | None]] = []
+    if trials.fits(t, C, rig):
         made = trials.final(t, C, rig)
         if made.ready:  # else the thinned samples did not show what is wrong
             return [Remedy(RemedyKind.RELAX, NOTHING, 0.0, t, C, rig, made)]
     for number, (i, kind) in enumerate(candidates):
-        trials.done = 10 * number
+        trials.done = RELAX_TRIALS * number
 
         def fits(share: float, i: int = i, kind: int = kind) -> bool:
-            return trials.feasible(t, C, raised(rig, i, kind, share)).ready
+            return trials.fits(t, C, raised(rig, i, kind, share))
 
         if not fits(1.0):
             continue
@@ -232,15 +190,36 @@ def relax(
         while high - low > RELATIVE:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if fits(middle) else (middle, high)
-        found.append((high, i, kind))
+        between = 0.5 * (high + 1.0)
+        found.append((high, i, kind, None if fits(between) else between))
     remedies = []
-    for share, i, kind in sorted(found):
+    for share, i, kind, failing in sorted(found, key=lambda each: each[:3]):
         wider = raised(rig, i, kind, share)
-        value = (wider.position_max, wider.max_rate, wider.max_acceleration)[kind][i]
         made = trials.final(t, C, wider)
         if made.ready:
-            remedies.append(Remedy(RemedyKind.RELAX, f"{FRAMES[i]} {LIMITS[kind]}", float(value), t, C, wider, made))
+            fails = None if failing is None else _limit_of(raised(rig, i, kind, failing), i, kind)
+            what, value = f"{FRAMES[i]} {LIMITS[kind]}", _limit_of(wider, i, kind)
+            remedies.append(
+                Remedy(RemedyKind.RELAX, what, value, t, C, wider, made, fails_again=fails, given_up=trials.given_up)
+            )
     return remedies
+
+
+def _limit_of(rig: Rig, frame: int, kind: int) -> float:
+    return float((rig.position_max, rig.max_rate, rig.max_acceleration)[kind][frame])
+
+
+def tolerance(
+    time: ArrayLike, attitude: ArrayLike, rig: Rig, start: ArrayLike | None = None, options: PlanOptions | None = None,
+    progress: Progress | None = None,
+) -> Remedy:  # fmt: skip
+    """The least tolerance that was found for which the flight fits; `Remedy.deviation` is what it costs.
+
+    Of a recorded flight whose noise matters, what the recording added is taken away first. Raises `CancelledError` from
+    progress, `InputError` as `plan` does.
+    """
+    t, C = np.asarray(time, float), np.asarray(attitude, float)
+    return least_change(t, C, rig, Trials(1, progress, options or PlanOptions(), start))
 
 
 def _limits(rig: Rig) -> Iterator[tuple[int, int]]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from fullpose._typing import Array, Integers
 from fullpose.kinematics import singularity_measures
+from fullpose.plan.impossible import Beyond
 from fullpose.plan.reason import Reason
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Blocking
@@ -29,7 +30,7 @@ CERTAINTY = {
     Decision.CHECKED: Certainty.CHECKED, Decision.TOLERANCE: Certainty.CHECKED,
     Decision.POSITION: Certainty.GRID_COMPLETE, Decision.RATE: Certainty.GRID_COMPLETE,
     Decision.ACCELERATION: Certainty.EVIDENCE, Decision.START_RATE: Certainty.EVIDENCE,
-    Decision.THREE_AXIS: Certainty.COMPLETE,
+    Decision.THREE_AXIS: Certainty.COMPLETE, Decision.BEYOND: Certainty.COMPLETE,
 }  # fmt: skip
 HOW_SURE = {
     Decision.CHECKED: "every sample checked by code apart from the planner.",
@@ -50,6 +51,10 @@ HOW_SURE = {
         "as far as the search went: node paths inside the rate limits exist, but none of those "
         "refined came inside every limit, with or without regard to the accelerations; the best of them fails worst at "
         "{closed:.3f} s. Evidence, not a proof."
+    ),
+    Decision.BEYOND: (
+        "at {closed:.3f} s the attitude itself accelerates more than all frames together can, each at its rate and "
+        "acceleration limits: no search was needed."
     ),
     Decision.START_RATE: (
         "with the start rate asked for no path was found that takes it up inside the limits. Evidence, not a proof."
@@ -77,6 +82,7 @@ class Verdict:
     least_tolerance: float = math.nan
     closed: Blocking | None = None
     reason: Reason | None = None
+    beyond: Beyond | None = None  # where that decided
 
     @property
     def certainty(self) -> Certainty:

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from fullpose.attitude import dcm_from_euler
-from fullpose.errors import CancelledError, InputError
+from fullpose.errors import CancelledError, InputError, OutOfTimeError
 from fullpose.plan import plan
-from fullpose.plan.remedies import NOTHING, offset, raised, relax, slow_down, turned
+from fullpose.plan.impossible import beyond_all_frames
+from fullpose.plan.remedies import offset, raised, relax, slow_down, tolerance, turned
+from fullpose.plan.remedy import NOTHING, Trials
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
-from fullpose.verify import verify
+from fullpose.verify import payload_attitudes, verify
 from fullpose.vocabulary import RemedyKind
 
 DEG = np.pi / 180.0
@@ -153,3 +155,77 @@ def test_names_that_are_none():
         relax(TIME, YAW, base_alone(1.0), limit="jerk")
     with pytest.raises(InputError, match="outer, middle, inner, the frames of vertical-3"):
         relax(TIME, YAW, builtin_rigs()["vertical-3"], frame="base")
+
+
+def test_the_least_tolerance_is_a_remedy_and_says_what_it_costs():
+    """20 deg in half a second with half the rate: the ramp through the middle of the step misses it by 5 deg."""
+    yaw = 20 * DEG * np.clip(TIME - 1.25, 0.0, 0.5) / 0.5
+    remedy = tolerance(TIME, dcm_from_euler(yaw, 0.0, 0.0), base_alone(20 * DEG))
+    assert remedy.plan.ready
+    assert remedy.value == pytest.approx(5 * DEG, rel=0.1)
+    off = np.abs(remedy.plan.solution.angles[:, 0] - yaw)  # the base alone turns: the attitude error is its own
+    assert remedy.deviation == pytest.approx(off, abs=1e-4)
+    assert remedy.deviation.max() <= remedy.value
+    assert verify(remedy.time, remedy.plan.solution.angles, remedy.rig).violations == ()
+
+
+def test_a_flight_that_fits_needs_no_tolerance():
+    remedy = tolerance(TIME, YAW, base_alone(50 * DEG))
+    assert (remedy.what, remedy.value) == (NOTHING, 0.0)
+    assert flies(remedy)
+
+
+def test_of_a_recorded_flight_the_noise_is_what_the_tolerance_takes():
+    random, sigma = np.random.default_rng(0), 0.01 * DEG
+    t = np.arange(0.0, 3.0, 0.002)
+    yaw, noise = 40 * DEG * np.sin(t), sigma * random.normal(size=len(t))
+    rig = builtin_rigs()["vertical-limited"]
+    remedy = tolerance(t, dcm_from_euler(yaw + noise, 0.0, 0.0), rig)
+    assert remedy.plan.ready
+    assert 2.0 * sigma < remedy.value < 8.0 * sigma
+    assert remedy.deviation.max() <= remedy.value
+
+
+def test_a_slower_flight_that_fails_again_is_told(monkeypatch):
+    """Fits from 1.6 times on, but not beyond 2.7: what halving assumes not to be."""
+    honest = Trials.fits
+
+    def fits(self, time, attitude, rig):
+        return honest(self, time, attitude, rig) and time[-1] < 2.7 * TIME[-1]
+
+    monkeypatch.setattr(Trials, "fits", fits)
+    remedy = slow_down(TIME, YAW, base_alone(25 * DEG))
+    assert flies(remedy)
+    assert remedy.value == pytest.approx(1.6, rel=0.02)
+    assert remedy.fails_again == pytest.approx(1.8 * remedy.value)
+
+
+def test_a_trial_that_is_given_up_counts_as_failed_and_the_search_goes_on():
+    def slow_first(done, total):
+        assert total >= done
+        if done == 1:
+            raise OutOfTimeError("too long")
+
+    remedy = slow_down(TIME, YAW, base_alone(50 * DEG), progress=slow_first)
+    assert flies(remedy)
+    assert remedy.given_up == 1
+    assert 1.0 < remedy.value <= 1.0 + 2 * 0.01  # the flight as it is fits, but that trial was given up
+    told = []
+    slow_down(TIME, YAW, base_alone(25 * DEG), progress=lambda done, total: told.append((done, total)))
+    assert max(done for done, _ in told) <= told[0][1]
+
+
+@pytest.mark.parametrize("name", ["vertical-limited", "horizontal-4", "vertical-3"])
+@pytest.mark.parametrize("seed", range(4))
+def test_no_motion_of_the_frames_inside_their_limits_is_beyond_all_of_them(name, seed):
+    """Frames that swing at their limits: the body stays below the bound, with noise on it it does not."""
+    rig = builtin_rigs()[name]
+    random = np.random.default_rng(seed)
+    t = np.arange(0.0, 1.0, 0.001)
+    w = rig.max_acceleration / rig.max_rate  # sin with rate v and acceleration a has w = a / v
+    x = np.where(rig.axes >= 0, rig.max_rate / w * np.sin(w * t[:, None] + random.uniform(0, 6, 4)), 0.0)
+    assert beyond_all_frames(t, payload_attitudes(rig, x), rig) is None
+    noise = 0.05 * DEG * random.normal(size=x.shape) * (rig.axes >= 0)
+    found = beyond_all_frames(t, payload_attitudes(rig, x + noise), rig)
+    assert found is not None
+    assert found.needed > found.most

@@ -2995,9 +2995,10 @@ export interface components {
         };
         /**
          * RemedyChange
-         * @description What was changed, by how much (`unit`: times, deg, deg/s or deg/s^2), and that in words.
+         * @description What was changed, by how much (`unit`: times, deg, deg/s or deg/s^2), that in words, and what it costs.
          */
         RemedyChange: {
+            cost?: components["schemas"]["RemedyCost"] | null;
             /** Statement */
             statement: string;
             /** Unit */
@@ -3006,9 +3007,30 @@ export interface components {
             value: number;
             /**
              * What
-             * @description time; the axis yaw, pitch or roll; frame and limit; or nothing
+             * @description attitude; time; the axis yaw, pitch or roll; frame and limit; or nothing
              */
             what: string;
+        };
+        /**
+         * RemedyCost
+         * @description What a remedy costs; null what it leaves alone.
+         */
+        RemedyCost: {
+            /** Deviation Max Deg */
+            deviation_max_deg?: number | null;
+            /** Deviation Rms Deg */
+            deviation_rms_deg?: number | null;
+            /** Longer Percent */
+            longer_percent?: number | null;
+            /** Longer S */
+            longer_s?: number | null;
+            /**
+             * Raised By
+             * @description In the unit of the limit; of a range on each side
+             */
+            raised_by?: number | null;
+            /** Turned Deg */
+            turned_deg?: number | null;
         };
         /**
          * RemedyIn
@@ -3021,7 +3043,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "slow_down" | "heading_offset" | "mounting_offset" | "relax";
+            kind: "tolerance" | "slow_down" | "heading_offset" | "mounting_offset" | "relax";
             /** Limit */
             limit?: ("position" | "rate" | "acceleration") | null;
         };
@@ -3042,7 +3064,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "slow_down" | "heading_offset" | "mounting_offset" | "relax";
+            kind: "tolerance" | "slow_down" | "heading_offset" | "mounting_offset" | "relax";
             /** Limit */
             limit: ("position" | "rate" | "acceleration") | null;
             /**

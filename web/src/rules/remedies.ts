@@ -9,6 +9,11 @@ export interface RemedyLook {
 }
 
 export const REMEDIES: readonly RemedyLook[] = [
+  {
+    kind: "tolerance",
+    label: "Allow a tolerance",
+    hint: "The least by which the attitude is missed inside every limit; noise of the recording is taken away first",
+  },
   { kind: "slow_down", label: "Fly it slower", hint: "The least factor on its time" },
   { kind: "heading_offset", label: "Turn the heading", hint: "The whole flight, by one angle about the vertical" },
   { kind: "mounting_offset", label: "Turn the mounting", hint: "The payload in the inner frame, by one angle" },

@@ -220,7 +220,7 @@ def _out(services: Services, row: PlanRow, name: str | None = None) -> PlanOut:
 
 
 def _remedy(asked: dict[str, Any], found: dict[str, Any]) -> RemedyOut:
-    change = {name: found[name] for name in RemedyChange.model_fields} if found else None
+    change = {name: found.get(name) for name in RemedyChange.model_fields} if found else None
     return RemedyOut.model_validate(
         {
             **asked,

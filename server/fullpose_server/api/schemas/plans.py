@@ -217,13 +217,25 @@ class RemedyIn(Wire):
         return self
 
 
-class RemedyChange(Wire):
-    """What was changed, by how much (`unit`: times, deg, deg/s or deg/s^2), and that in words."""
+class RemedyCost(Wire):
+    """What a remedy costs; null what it leaves alone."""
 
-    what: str = Field(description="time; the axis yaw, pitch or roll; frame and limit; or nothing")
+    longer_s: float | None = None
+    longer_percent: float | None = None
+    deviation_max_deg: float | None = None
+    deviation_rms_deg: float | None = None
+    raised_by: float | None = Field(default=None, description="In the unit of the limit; of a range on each side")
+    turned_deg: float | None = None
+
+
+class RemedyChange(Wire):
+    """What was changed, by how much (`unit`: times, deg, deg/s or deg/s^2), that in words, and what it costs."""
+
+    what: str = Field(description="attitude; time; the axis yaw, pitch or roll; frame and limit; or nothing")
     value: float
     unit: str
     statement: str
+    cost: RemedyCost | None = None
 
 
 class RemedyOut(Wire):
