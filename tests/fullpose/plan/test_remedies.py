@@ -222,8 +222,10 @@ def test_no_motion_of_the_frames_inside_their_limits_is_beyond_all_of_them(name,
     rig = builtin_rigs()[name]
     random = np.random.default_rng(seed)
     t = np.arange(0.0, 1.0, 0.001)
-    w = rig.max_acceleration / rig.max_rate  # sin with rate v and acceleration a has w = a / v
-    x = np.where(rig.axes >= 0, rig.max_rate / w * np.sin(w * t[:, None] + random.uniform(0, 6, 4)), 0.0)
+    frames = list(rig.geometry.frames)
+    rate, w = rig.max_rate[frames], rig.max_acceleration[frames] / rig.max_rate[frames]
+    x = np.zeros((len(t), 4))  # a sine of rate v and acceleration a has w = a / v
+    x[:, frames] = rate / w * np.sin(w * t[:, None] + random.uniform(0.0, 6.0, len(frames)))
     assert beyond_all_frames(t, payload_attitudes(rig, x), rig) is None
     noise = 0.05 * DEG * random.normal(size=x.shape) * (rig.axes >= 0)
     found = beyond_all_frames(t, payload_attitudes(rig, x + noise), rig)
