@@ -69,12 +69,6 @@ class Trials:
         made = self.feasible(time, attitude, rig)
         return made is not None and made.ready
 
-    def whole(self, time: Array, attitude: Array, rig: Rig) -> bool:
-        """Whether a trial on every sample does."""
-        self.done += 1
-        made = self._watched(time, attitude, rig, self.quick)
-        return made is not None and made.ready
-
     def _watched(self, time: Array, attitude: Array, rig: Rig, options: PlanOptions) -> Plan | None:
         try:
             self._tell()
