@@ -26,11 +26,9 @@ from fullpose_server.api.schemas.plans import (
     PlanIn,
     PlanOut,
     PlanSamples,
-    RemedyChange,
-    RemedyIn,
-    RemedyOut,
     ReportOut,
 )
+from fullpose_server.api.schemas.remedies import RemedyChange, RemedyIn, RemedyOut
 from fullpose_server.errors import TransitionError
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.start_pose import start_pose
