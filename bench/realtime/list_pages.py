@@ -79,7 +79,15 @@ def fill_runs(folder: Path, rows: int) -> list[str]:
         began = BEGAN + row
         run = f"{time.strftime('%Y%m%dT%H%M%S', time.gmtime(began))}-{RIG}-{row % 1_000_000:06d}"
         nothing: dict[str, Any] = dict.fromkeys(RunSummary.__dataclass_fields__)
-        known = {"id": run, "rig": RIG, "who": "ann", "started": began, "ended": began + 30.0, "samples": 30_000}
+        known = {
+            "plan_id": f"{row:016x}",
+            "id": run,
+            "rig": RIG,
+            "who": "ann",
+            "started": began,
+            "ended": began + 30.0,
+            "samples": 30_000,
+        }
         summary = RunSummary(**{**nothing, **known, "bytes": 8, "complete": True, "lost_samples": 0})
         record = folder / f"{run}.mcap"
         record.write_bytes(b"12345678")
@@ -126,6 +134,7 @@ def pages(runs: list[str]) -> dict[str, tuple[str, Callable[[int], str]]]:
         "comparisons": ("/compare", keyed(lambda row: f"{row:016x}")),
         "runs": ("/runs", keyed(lambda row: runs[row])),
         "runs of one rig": (f"/runs?rig={RIG}", keyed(lambda row: runs[row])),
+        "runs of one flight": ("/runs?q=roll", keyed(lambda row: runs[row])),  # all of them, by their plans' flight
         "alarms": ("/alarms", keyed(lambda row: alarm_id("bench", row))),
         "alarms of one code": ("/alarms?code=following_error", keyed(lambda row: alarm_id("bench", row))),
         "audit": ("/audit", lambda row: str(row + 1)),

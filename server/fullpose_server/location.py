@@ -5,6 +5,7 @@ from pathlib import Path
 from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
 DATABASE = "fullpose.db"  # SQLite's, in a data folder
+EVIDENCE_KEY = "evidence.key"  # in a data folder: what its server signs evidence with
 SCHEMES = ("postgresql", "postgresql+psycopg", "postgres")
 EXPECTED = "postgresql://USER:PASSWORD@HOST:PORT/DATABASE"
 

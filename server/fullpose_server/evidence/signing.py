@@ -17,8 +17,8 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey,
 
 from fullpose_server.errors import FileError
 from fullpose_server.formats import durable
+from fullpose_server.location import EVIDENCE_KEY
 
-KEY_FILE = "evidence.key"  # in the data folder
 FORMAT = 1
 ALGORITHM = "Ed25519"
 _SIGNED = b"fullpose.evidence/1\n"  # so that it is the signature of nothing else
@@ -32,7 +32,7 @@ class SignatureError(Exception):
 
 def signing_key(folder: Path) -> Ed25519PrivateKey:
     """The key of a data folder, made where there is none. Raises `FileError` where its file is no key."""
-    path = folder / KEY_FILE
+    path = folder / EVIDENCE_KEY
     if not path.exists():
         _make(path)
     try:

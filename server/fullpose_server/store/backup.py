@@ -25,7 +25,7 @@ from typing import IO
 
 from fullpose_server.errors import ServerError
 from fullpose_server.formats import durable
-from fullpose_server.location import DATABASE, Location
+from fullpose_server.location import DATABASE, EVIDENCE_KEY, Location
 from fullpose_server.store.belonging import check
 from fullpose_server.store.copying import copy_rows
 from fullpose_server.store.database import HEAD, Database
@@ -37,7 +37,7 @@ FORMAT = 1
 MANIFEST = "manifest.json"
 FOLDERS = ("trajectories", "plans", "comparisons", "runs")
 RIGS = "rigs"  # of these the files, not the folders of their processes
-SECRET = (DATABASE, "evidence.key")  # at the top, readable by their owner alone
+SECRET = (DATABASE, EVIDENCE_KEY)  # at the top, readable by their owner alone
 SCRATCH = ".backup-"
 CHUNK = 1 << 20
 Progress = Callable[[int, int], None]

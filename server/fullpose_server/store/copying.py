@@ -1,9 +1,10 @@
 """All rows of one database into another of the same revision, whichever kind either is: of one moment, all or none."""
 
-from sqlalchemy import Connection, Table, func, insert, select, text
+from sqlalchemy import Table, func, insert, select
 from sqlalchemy.orm import Session
 
 from fullpose_server.errors import ServerError
+from fullpose_server.store import postgresql
 from fullpose_server.store.tables import DataFolderRow
 from fullpose_server.store.tables import Table as Tables
 
@@ -35,17 +36,5 @@ def copy_rows(source: Session, target: Session) -> int:
         for rows in source.execute(query).mappings().partitions():
             target.execute(insert(table), [dict(row) for row in rows])
             copied += len(rows)
-    if target.get_bind().dialect.name == "postgresql":
-        _go_on(target.connection())
+    postgresql.number_on(target.connection(), copied_tables())
     return copied
-
-
-def _go_on(connection: Connection) -> None:
-    """Let what numbers rows by itself go on after the largest."""
-    for table in copied_tables():
-        (key,) = table.primary_key.columns
-        sequence = connection.scalar(
-            text("SELECT pg_get_serial_sequence(:table, :column)"), {"table": table.name, "column": key.name}
-        )
-        if sequence is not None and (largest := connection.scalar(select(func.max(key)))) is not None:
-            connection.execute(text("SELECT setval(:sequence, :largest)"), {"sequence": sequence, "largest": largest})

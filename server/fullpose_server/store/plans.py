@@ -2,6 +2,7 @@
 
 import shutil
 import time
+from collections.abc import Collection
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, cast
@@ -93,9 +94,14 @@ class PlanStore:
         with self._database.begin() as session:
             return [(row, name) for row, name in session.execute(query)]
 
-    def of_wanted(self, part: str) -> frozenset[str]:
-        """The ids of the plans that have this part of what is wanted, in their own words or in their flight's."""
+    def of_wanted(self, part: str, among: Collection[str] | None = None) -> frozenset[str]:
+        """The ids of the plans that have this part of what is wanted, in their own words or in their flight's.
+
+        `among`: of these plans alone, some hundreds.
+        """
         query = select(PlanRow.id).join(TrajectoryRow)
+        if among is not None:
+            query = query.where(PlanRow.id.in_(among))
         with self._database.begin() as session:
             return frozenset(session.scalars(query.where(*searched(Wanted((part,)), *SEARCHED))))
 

@@ -5,10 +5,11 @@ import os
 import socket
 import threading
 import time
+from collections.abc import Iterable
 from contextlib import suppress
 from typing import Any
 
-from sqlalchemy import Engine, create_engine, event, make_url
+from sqlalchemy import Connection, Engine, Table, create_engine, event, func, make_url, select, text
 from sqlalchemy.exc import DBAPIError, DisconnectionError, OperationalError
 from sqlalchemy.pool import NullPool
 
@@ -56,6 +57,19 @@ def patient_engine(location: PostgresqlUrl, *, changes: bool) -> Engine:
 def alone(tables: list[str]) -> str:
     """The statement by which a transaction has these tables to itself, but for who reads."""
     return f"LOCK TABLE {', '.join(tables)} IN SHARE ROW EXCLUSIVE MODE"
+
+
+def number_on(connection: Connection, tables: Iterable[Table]) -> None:
+    """Let what numbers the rows of these tables by itself go on after the largest; nothing on another database."""
+    if connection.dialect.name != "postgresql":
+        return
+    for table in tables:
+        (key,) = table.primary_key.columns
+        sequence = connection.scalar(
+            text("SELECT pg_get_serial_sequence(:table, :column)"), {"table": table.name, "column": key.name}
+        )
+        if sequence is not None and (largest := connection.scalar(select(func.max(key)))) is not None:
+            connection.execute(text("SELECT setval(:sequence, :largest)"), {"sequence": sequence, "largest": largest})
 
 
 def told(error: DBAPIError) -> StorageError | None:

@@ -17,10 +17,11 @@ from fullpose.rig import builtin_rigs
 from fullpose_server.errors import FileError, NotFoundError
 from fullpose_server.evidence.bundle import make_bundle
 from fullpose_server.evidence.errors import NoEvidenceError
-from fullpose_server.evidence.signing import KEY_FILE, public_key, signing_key
+from fullpose_server.evidence.signing import public_key, signing_key
 from fullpose_server.evidence.verification import verify_bundle
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.rig_toml import rig_toml
+from fullpose_server.location import EVIDENCE_KEY
 from fullpose_server.runtime.recording.mcap_reader import read_samples
 from fullpose_server.store.alarms import AlarmHistory
 from fullpose_server.store.audit import newest_hash
@@ -232,7 +233,7 @@ def test_a_full_disk_leaves_nothing(run: Flown, tmp_path: Path) -> None:
 
 
 def test_the_key_is_the_server_s_alone_and_made_once(run: Flown) -> None:
-    path = run.folder / KEY_FILE
+    path = run.folder / EVIDENCE_KEY
     first = public_key(signing_key(run.folder))
     assert path.stat().st_mode & 0o777 == 0o600
     assert public_key(signing_key(run.folder)) == first
@@ -249,7 +250,7 @@ def test_making_it_changes_nothing_else(run: Flown) -> None:
     before = all_of()
     made(run)
     after = all_of()
-    assert after.pop(KEY_FILE)
+    assert after.pop(EVIDENCE_KEY)
     assert after == before
 
 

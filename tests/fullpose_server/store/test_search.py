@@ -89,6 +89,8 @@ def test_a_plan_is_found_by_its_own_and_its_flight_s_words(stores: Stores, tmp_p
     assert ids("dive friday vertical-4") == [dive]
     assert ids(None, "Release") == [dive]
     assert stores.plans.of_wanted("loop") == {loop}
+    assert stores.plans.of_wanted("exact", {dive, "none"}) == {dive}
+    assert stores.plans.of_wanted("exact", set()) == frozenset()
     assert stores.plans.get(dive).tags == ["release"]
     with pytest.raises(NotFoundError):
         stores.plans.label("none", Labels())

@@ -2,6 +2,7 @@
 
 import asyncio
 from datetime import UTC, datetime
+from functools import partial
 from typing import Any
 from uuid import uuid4
 
@@ -50,7 +51,7 @@ def _sought(services: Services, wanted: Wanted) -> Sought | None:
     """None where nothing is searched for."""
     if not wanted.parts:
         return None
-    return tuple((part, services.plans.of_wanted(part)) for part in wanted.parts)
+    return tuple((part, partial(services.plans.of_wanted, part)) for part in wanted.parts)
 
 
 @router.patch("/{run}", dependencies=CHANGE)

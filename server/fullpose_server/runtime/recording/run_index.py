@@ -5,6 +5,7 @@ import os
 import threading
 import time
 from bisect import bisect_left
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -81,18 +82,14 @@ class RunFiles:
         alone that have each of its parts.
         """
         found: list[RunSummary] = []
-        fits = None if sought is None else self._search.by(sought)
         began = time.monotonic()
         # Of ten thousand records all but a page are passed over by their names alone.
         ids = self._names.all()
         end = len(ids) if before is None else bisect_left(ids, before)
-        for run in reversed(ids[:end]):
-            if limit is not None and len(found) >= limit:
-                break
-            if rig is not None and rig_of(run) != rig:
-                continue
-            if fits is not None and not fits(run):
-                continue
+        newest: Iterator[str] = (run for run in reversed(ids[:end]) if rig is None or rig_of(run) == rig)
+        if sought is not None:
+            newest = self._search.among(newest, sought)
+        for run in newest:
             path = self.folder / f"{run}{RECORD}"
             # One that is gone since we looked for it is no run any more.
             with contextlib.suppress(FileNotFoundError):
@@ -102,6 +99,8 @@ class RunFiles:
                 except (RecordError, OSError) as error:
                     if not _is_fresh(path):
                         found.append(unreadable(path, error))
+            if limit is not None and len(found) >= limit:  # before the next is looked for, which may take longer
+                break
         return found
 
     def get(self, run: str) -> RunSummary:
