@@ -76,8 +76,9 @@ export const api = {
 
   comparisons: (before: string | null = null) => page("/api/v1/compare", {}, {}, before, READ.withinMs),
   comparison: (comparison: string) => request("get", "/api/v1/compare/{comparison}", { comparison }, READ),
-  createComparison: (trajectory: string, rig: string, methods: string[]) =>
-    request("post", "/api/v1/compare", {}, { ...READ, body: { trajectory, rig, methods } }),
+  /** `tolerance_deg`: null for the flight as it is. */
+  createComparison: (trajectory: string, rig: string, methods: string[], tolerance_deg: number | null) =>
+    request("post", "/api/v1/compare", {}, { ...READ, body: { trajectory, rig, methods, tolerance_deg } }),
   /** Cancels one that is under way, removes one that is not. */
   removeComparison: (comparison: string) => request("delete", "/api/v1/compare/{comparison}", { comparison }, READ),
 

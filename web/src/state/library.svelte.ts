@@ -191,8 +191,13 @@ export class Library {
     await this.planning.refresh();
   }
 
-  async compare(trajectory: string, rig: string, methods: string[]): Promise<Comparison> {
-    const comparison = await this.api.createComparison(trajectory, rig, methods);
+  async compare(
+    trajectory: string,
+    rig: string,
+    methods: string[],
+    toleranceDeg: number | null = null,
+  ): Promise<Comparison> {
+    const comparison = await this.api.createComparison(trajectory, rig, methods, toleranceDeg);
     this.comparisons.put(comparison);
     return comparison;
   }

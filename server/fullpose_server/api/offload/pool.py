@@ -20,6 +20,8 @@ from fullpose_server.settings import Settings
 
 PROCESSES = 2
 WAITING = 32  # requests, beyond those in work
+WARMING_S = 600.0  # that compiling may take on a fresh installation
+_WARMED = frozenset({Work.DIAGNOSE, Work.TOLERANCE})  # wait until what they need is compiled
 log = logging.getLogger(__name__)
 
 
@@ -34,6 +36,8 @@ class Offload:
         self._idle: asyncio.LifoQueue[WorkerProcess] = asyncio.LifoQueue()  # the one that was used last is taken first
         self._asked = 0
         self._prewarming: asyncio.Task[None] | None = None
+        self._warming = settings.spare_rig_process  # as with the rig process in reserve: made ready before it is needed
+        self._warm = asyncio.Event()
 
     def start(self) -> None:
         """Have the processes ready before they are needed; who comes earlier waits for the first."""
@@ -53,6 +57,8 @@ class Offload:
             raise ApiError(429, "busy", f"{self._asked} uploads and batches are being worked on: try again")
         self._asked += 1
         try:
+            if work in _WARMED and self._warming:
+                await self._warm.wait()
             worker = await self._idle.get()
             try:
                 return await self._answer(worker, work, request)
@@ -96,12 +102,25 @@ class Offload:
                 await worker.kill()
 
     async def _prewarm(self) -> None:
-        for worker in self._workers:  # one after another: the first is ready the sooner
-            try:
-                with contextlib.suppress(OSError):  # said again, by the request that needs it
-                    await worker.start()
-            finally:
-                self._idle.put_nowait(worker)
+        try:
+            for worker in self._workers:  # one after another: the first is ready the sooner
+                try:
+                    with contextlib.suppress(OSError):  # said again, by the request that needs it
+                        await worker.start()
+                        if self._warming and worker is self._workers[-1]:
+                            await self._compile(worker)
+                finally:
+                    self._idle.put_nowait(worker)
+        finally:
+            self._warm.set()
+
+    async def _compile(self, worker: WorkerProcess) -> None:
+        """Have the kernels compiled, and kept for the other processes too, while those read uploads."""
+        try:
+            async with asyncio.timeout(WARMING_S):
+                await self._told(worker, Work.WARM, {})
+        except (TimeoutError, ApiError) as error:  # a diagnosis then compiles them itself
+            log.warning("what a diagnosis needs could not be compiled ahead: %r", error)
 
 
 def _refusal(problem: Problem) -> ApiError:

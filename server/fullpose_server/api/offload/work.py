@@ -37,6 +37,7 @@ class Work(StrEnum):
     SOLVE = "solve"
     TOLERANCE = "tolerance"
     DIAGNOSE = "diagnose"
+    WARM = "warm"  # nothing is made: what a diagnosis needs is compiled, or loaded
 
 
 @dataclass(frozen=True)
@@ -183,12 +184,20 @@ def _diagnose(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
     return {}
 
 
+def _warm(_values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    from fullpose_server.api.offload.warming import warm
+
+    warm()
+    return {}
+
+
 MAKERS: dict[str, Maker] = {
     Work.READ_FILE: _read_file,
     Work.READ_JSON: _read_json,
     Work.SOLVE: _solve,
     Work.TOLERANCE: _tolerance,
     Work.DIAGNOSE: _diagnose,
+    Work.WARM: _warm,
 }
 
 

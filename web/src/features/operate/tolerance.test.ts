@@ -3,7 +3,7 @@ import { fireEvent, screen } from "@testing-library/svelte";
 import { expect, it } from "vitest";
 import { TestConsole } from "../../testing/console";
 import { effect } from "../../testing/wire";
-import ToleranceField from "./ToleranceField.svelte";
+import ToleranceField from "../../ui/panels/ToleranceField.svelte";
 
 it("a tolerance begins where it is enough, and every move of the slider shows what it does", async () => {
   const told = (wanted: number | null) =>
