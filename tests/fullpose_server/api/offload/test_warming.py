@@ -9,7 +9,7 @@ import numpy as np
 from fullpose.scenarios import random_flight
 from fullpose_server.api.offload.tolerance import LONGEST_KEPT, diagnosis_of, tolerance_effect
 from fullpose_server.formats.flight_folder import write_flight
-from fullpose_server.formats.trajectory import Convention, from_columns
+from fullpose_server.formats.trajectory import Convention, Trajectory
 
 # In a process of its own, where no other test has compiled anything.
 COVERED = """
@@ -55,8 +55,7 @@ def test_nothing_is_compiled_for_a_recording_of_any_kind_once_it_is_warm() -> No
 def test_a_slider_that_is_moved_asks_for_one_diagnosis_and_is_told_as_without_it(tmp_path: Path) -> None:
     time_s, q = random_flight(3, 4.0, 100.0, 0.5)
     q = q + 1e-4 * np.random.default_rng(3).normal(size=q.shape)
-    columns = {"time_s": time_s, **{name: q[:, k] for k, name in enumerate(("qw", "qx", "qy", "qz"))}}
-    flight = from_columns(columns, Convention.NUE, "noisy", lambda row: row, unit="sample")
+    flight = Trajectory(time_s, q / np.linalg.norm(q, axis=1)[:, None], Convention.NUE)
     kept, fresh = tmp_path / "kept", tmp_path / "fresh"
     for folder in (kept, fresh):
         folder.mkdir()
