@@ -202,8 +202,9 @@ def test_warming_runs_every_method(capsys: pytest.CaptureFixture[str], monkeypat
     monkeypatch.setattr(sys, "argv", ["warm.py"])
     runpy.run_path(str(DOCKER / "warm.py"), run_name="__main__")
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split(":")[0] for line in lines[:-1]] == list(method_names())
-    assert lines[-1].startswith("loop and drive in ")
+    assert [line.split(":")[0] for line in lines[:-2]] == list(method_names())
+    assert lines[-2].startswith("loop and drive in ")
+    assert lines[-1].startswith("diagnosis and tolerance in ")
 
 
 def test_the_service_runs_what_is_installed_with_settings_that_there_are() -> None:
