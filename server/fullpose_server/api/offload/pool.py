@@ -121,9 +121,8 @@ class Offload:
                 await self._told(worker, Work.WARM, {})
         except (TimeoutError, ApiError) as error:  # a diagnosis then compiles them itself
             log.warning("what a diagnosis needs could not be compiled ahead: %r", error)
-        finally:
-            await worker.kill()  # what it has loaded for that would count as an upload's
-            await worker.start()
+        await worker.kill()  # what it has loaded for that would count as an upload's
+        await worker.start()
 
 
 def _refusal(problem: Problem) -> ApiError:
