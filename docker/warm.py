@@ -17,7 +17,7 @@ from fullpose.resample import resample
 from fullpose.rig import builtin_rigs
 from fullpose.solve import solve
 from fullpose.verify import verify
-from fullpose_server.api.offload.warming import warm
+from fullpose_server.api.offload.prewarm import prewarm as of_diagnosis
 from fullpose_server.drives import registry
 from fullpose_server.runtime.contract.config import RigConfig
 from fullpose_server.runtime.loop import prewarm
@@ -51,7 +51,7 @@ def main() -> None:
         drive.close()
     print(f"loop and drive in {time.perf_counter() - started:.1f} s", flush=True)  # noqa: T201
     started = time.perf_counter()
-    warm()
+    of_diagnosis()
     print(f"diagnosis and tolerance in {time.perf_counter() - started:.1f} s", flush=True)  # noqa: T201
 
 

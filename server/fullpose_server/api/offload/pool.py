@@ -20,8 +20,8 @@ from fullpose_server.settings import Settings
 
 PROCESSES = 2
 WAITING = 32  # requests, beyond those in work
-WARMING_S = 600.0  # that compiling may take on a fresh installation
-_WARMED = frozenset({Work.DIAGNOSE, Work.TOLERANCE})  # wait until what they need is compiled
+PREWARM_S = 600.0  # that compiling may take on a fresh installation
+_AFTER_PREWARM = frozenset({Work.DIAGNOSE, Work.TOLERANCE})  # wait until what they need is compiled
 log = logging.getLogger(__name__)
 
 
@@ -36,8 +36,10 @@ class Offload:
         self._idle: asyncio.LifoQueue[WorkerProcess] = asyncio.LifoQueue()  # the one that was used last is taken first
         self._asked = 0
         self._prewarming: asyncio.Task[None] | None = None
-        self._warming = settings.spare_rig_process  # as with the rig process in reserve: made ready before it is needed
-        self._warm = asyncio.Event()
+        self._prewarms = (
+            settings.spare_rig_process
+        )  # as with the rig process in reserve: made ready before it is needed
+        self._prewarmed = asyncio.Event()
 
     def start(self) -> None:
         """Have the processes ready before they are needed; who comes earlier waits for the first."""
@@ -57,8 +59,8 @@ class Offload:
             raise ApiError(429, "busy", f"{self._asked} uploads and batches are being worked on: try again")
         self._asked += 1
         try:
-            if work in _WARMED and self._warming:
-                await self._warm.wait()
+            if work in _AFTER_PREWARM and self._prewarms:
+                await self._prewarmed.wait()
             worker = await self._idle.get()
             try:
                 return await self._answer(worker, work, request)
@@ -107,18 +109,18 @@ class Offload:
                 try:
                     with contextlib.suppress(OSError):  # said again, by the request that needs it
                         await worker.start()
-                        if self._warming and worker is self._workers[-1]:
+                        if self._prewarms and worker is self._workers[-1]:
                             await self._compile(worker)
                 finally:
                     self._idle.put_nowait(worker)
         finally:
-            self._warm.set()
+            self._prewarmed.set()
 
     async def _compile(self, worker: WorkerProcess) -> None:
         """Have the kernels compiled, and kept for the other processes too, while those read uploads."""
         try:
-            async with asyncio.timeout(WARMING_S):
-                await self._told(worker, Work.WARM, {})
+            async with asyncio.timeout(PREWARM_S):
+                await self._told(worker, Work.PREWARM, {})
         except (TimeoutError, ApiError) as error:  # a diagnosis then compiles them itself
             log.warning("what a diagnosis needs could not be compiled ahead: %r", error)
         await worker.kill()  # what it has loaded for that would count as an upload's

@@ -37,7 +37,7 @@ class Work(StrEnum):
     SOLVE = "solve"
     TOLERANCE = "tolerance"
     DIAGNOSE = "diagnose"
-    WARM = "warm"  # nothing is made: what a diagnosis needs is compiled, or loaded
+    PREWARM = "prewarm"  # nothing is made: what a diagnosis needs is compiled, or loaded
 
 
 @dataclass(frozen=True)
@@ -184,10 +184,10 @@ def _diagnose(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
     return {}
 
 
-def _warm(_values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
-    from fullpose_server.api.offload.warming import warm
+def _prewarm(_values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    from fullpose_server.api.offload.prewarm import prewarm
 
-    warm()
+    prewarm()
     return {}
 
 
@@ -197,7 +197,7 @@ MAKERS: dict[str, Maker] = {
     Work.SOLVE: _solve,
     Work.TOLERANCE: _tolerance,
     Work.DIAGNOSE: _diagnose,
-    Work.WARM: _warm,
+    Work.PREWARM: _prewarm,
 }
 
 

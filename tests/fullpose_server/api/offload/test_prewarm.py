@@ -20,7 +20,7 @@ from bench.numerics.recorded import DEGRADATIONS
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.recorded import effect_of, smooth
 from fullpose.rig import builtin_rigs
-from fullpose_server.api.offload.warming import warm
+from fullpose_server.api.offload.prewarm import prewarm
 from fullpose_server.formats.diagnosis import diagnosis_document
 
 def compiled():
@@ -32,7 +32,7 @@ def compiled():
                     found[f"{name}.{word}"] = {str(each) for each in value.signatures}
     return found
 
-warm()
+prewarm()
 before = compiled()
 assert sum(map(len, before.values())) > 5, before
 for kind, record in DEGRADATIONS.items():

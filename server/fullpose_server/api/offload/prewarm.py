@@ -18,7 +18,7 @@ NOISE = 1e-4  # [rad]
 TOLERANCES = (None, 2.0 * NOISE)  # [rad] no bound, and one that the smoothing spline alone does not keep
 
 
-def warm() -> None:
+def prewarm() -> None:
     """Look at made-up recordings of a few samples, and throw the answers away.
 
     One is noisy, one has held samples, a gap and an outlier, one is as it should be, one has a clock that is regular.
