@@ -94,9 +94,18 @@ class Client:
         """All rigs."""
         return await self._array("GET", "/rigs")
 
-    async def upload(self, file: Path, convention: str = "nue", name: str | None = None) -> dict[str, Any]:
-        """Upload a flight; returns it as stored."""
-        fields = {"convention": convention, **({} if name is None else {"name": name})}
+    async def upload(
+        self, file: Path, convention: str | None = None, name: str | None = None, **reading: str | bool
+    ) -> dict[str, Any]:
+        """Upload a flight; returns it as stored.
+
+        convention: the axes it is written in, by default those of its profile. reading: `profile`, `columns` (a column
+        map as JSON), `strict`, `bridge_gaps`, `drop_duplicates`.
+        """
+        given = {"convention": convention, "name": name, **reading}
+        fields = {
+            key: str(value).lower() if isinstance(value, bool) else value for key, value in given.items() if value
+        }
         content = await asyncio.to_thread(file.read_bytes)
         return await self._object("POST", "/trajectories", data=fields, files={"file": (file.name, content)})
 

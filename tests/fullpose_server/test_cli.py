@@ -54,7 +54,8 @@ def test_the_help_names_every_command_and_method() -> None:
 def test_solve_writes_angles_that_reproduce_the_flight(tmp_path: Path) -> None:
     done = solve(written(tmp_path, GOOD), tmp_path, "--report", tmp_path / "r.json", "--start", "30,0,0,0")
     assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
+    (taken,) = done.stderr.splitlines()
+    assert "axes nue (profile fullpose, by its column names; no convention was given, nue is taken" in taken
     names, angles = table(tmp_path / "out.csv")
     assert names == ["time_s", "base_deg", "outer_deg", "middle_deg", "inner_deg", "error_deg", "limited"]
     flight = table(tmp_path / "flight.csv")[1]
@@ -68,15 +69,18 @@ def test_solve_writes_angles_that_reproduce_the_flight(tmp_path: Path) -> None:
     assert report["feasible"] is True
     assert report["blocking"] is None
     assert report["samples"] == 200
+    assert report["input"]["file"] == str(tmp_path / "flight.csv")
+    told = {name: report["input"][name] for name in ("format", "profile", "convention", "warnings")}
+    assert told == {"format": "csv", "profile": "fullpose", "convention": "nue", "warnings": []}
     assert set(report["peak"]) == {"base", "outer", "middle", "inner"}
     assert set(report["peak"]["base"]) == {"position_deg", "rate_deg_s", "acceleration_deg_s2"}
     assert {"method", "rig", "max_error_deg", "max_matrix_error", "iterations", "step_us", "solve_s"} <= set(report)
     assert np.abs(angles[:, 1]).max() == pytest.approx(report["peak"]["base"]["position_deg"], rel=1e-12)
 
 
-def test_a_shell_gets_the_status_the_line_and_nothing_else(tmp_path: Path) -> None:
+def test_a_shell_gets_the_status_what_was_taken_and_why_not(tmp_path: Path) -> None:
     env = os.environ | {"PYTHONPATH": PYTHONPATH}
-    for text, status, lines in ((GOOD, 0, 0), (HEADER, 2, 1), (FAST, 3, 1)):
+    for text, status, lines in ((GOOD, 0, 1), (HEADER, 2, 1), (FAST, 3, 2)):
         command = [sys.executable, "-W", "error", *COMMAND[1:], "solve", str(written(tmp_path, text))]
         command += ["--rig", "vertical-4", "--method", "exact", "--out", str(tmp_path / "out.csv")]
         done = subprocess.run(command, capture_output=True, text=True, env=env, check=False)

@@ -17,7 +17,15 @@ if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks
 
 FIELD_LIMIT = 4096  # bytes of a form field that is not the file
-FIELDS = ("name", "convention")  # that a form may have beside its file
+FIELDS = (
+    "name",
+    "convention",
+    "profile",
+    "columns",
+    "strict",
+    "bridge_gaps",
+    "drop_duplicates",
+)  # that a form may have beside its file
 LONGEST_NAME = 200  # characters of a file's name
 ENVELOPE = 65536  # what a form may have around its file
 

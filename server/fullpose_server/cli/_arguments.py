@@ -6,7 +6,7 @@ command that takes many is a function of one.
 
 import inspect
 from collections.abc import Callable
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_type_hints
 
@@ -15,16 +15,12 @@ import typer
 Record = TypeVar("Record")
 
 FlightFile = Annotated[
-    Path, typer.Argument(metavar="IN", help="CSV or Parquet: time_s and one attitude; or a scenario (TOML).")
+    Path, typer.Argument(metavar="IN", help="A log with one attitude (docs/guide/formats.md), or a scenario (TOML).")
 ]
 RigName = Annotated[str, typer.Option(help="Name of a built-in rig, or a TOML file.")]
 StartPose = Annotated[
     str | None, typer.Option(help="Start pose base,outer,middle,inner in degrees; without it the pose is free.")
 ]
-ConventionName = Annotated[
-    str, typer.Option(help="nue (yaw_deg,pitch_deg,roll_deg) or ned (heading_deg,pitch_deg,bank_deg).")
-]
-
 ToleranceDeg = Annotated[
     float | None,
     typer.Option(
@@ -38,8 +34,28 @@ Config = Annotated[
 ]
 
 
+@dataclass(frozen=True, kw_only=True)
+class ReadingArguments:
+    """How a flight is read: the same for every command that reads one."""
+
+    convention: Annotated[
+        str | None,
+        typer.Option(help="The axes it is written in, nue, ned or enu; without it, its profile's."),
+    ] = None
+    profile: Annotated[
+        str | None, typer.Option(help="Which column is what: a named profile or a TOML file; without it, guessed.")
+    ] = None
+    strict: Annotated[bool, typer.Option("--strict", help="Refuse a flight that there is a warning about.")] = False
+    bridge_gaps: Annotated[
+        bool, typer.Option("--bridge-gaps", help="Fly through gaps by interpolation; refused without it.")
+    ] = False
+    drop_duplicates: Annotated[
+        bool, typer.Option("--drop-duplicates", help="Of samples with one stamp, keep the first.")
+    ] = False
+
+
 def command(record: type[Record], run: Callable[[Record], None]) -> Callable[..., None]:
-    """`run` with the fields of the dataclass `record` as its parameters, in their order."""
+    """`run` with the fields of the dataclass `record` as its parameters, in their order, what must be given first."""
 
     def called(**arguments: Any) -> None:
         run(record(**arguments))
@@ -54,7 +70,7 @@ def command(record: type[Record], run: Callable[[Record], None]) -> Callable[...
                 default=inspect.Parameter.empty if each.default is MISSING else each.default,
                 annotation=hints[each.name],
             )
-            for each in fields(record)  # type: ignore[arg-type]
+            for each in sorted(fields(record), key=lambda each: each.default is not MISSING)  # type: ignore[arg-type]
         ]
     )
     called.__annotations__ = hints

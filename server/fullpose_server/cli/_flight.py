@@ -1,15 +1,19 @@
 """What commands that solve are told: the flight or scenario, its convention, the start pose."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fullpose_server.cli._arguments import ReadingArguments
 from fullpose_server.cli._exit import fail, say
+from fullpose_server.cli._progress import progress_bar
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fullpose.rig import Rig
+    from fullpose_server.formats.read_options import ReadOptions
+    from fullpose_server.formats.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -20,23 +24,53 @@ class Flight:
     q: "NDArray[Any]"
     start: "NDArray[Any] | None"
     warnings: tuple[Any, ...] = ()
+    input: dict[str, Any] = field(default_factory=dict)  # what was taken of the file, for the report
 
 
-def read_flight(path: Path, convention: str, rig: "Rig", start: str | None) -> Flight:
-    """The flight of a CSV or Parquet file, or of a scenario (TOML); its warnings are said.
+def read_flight(path: Path, asked: ReadingArguments, rig: "Rig", start: str | None) -> Flight:
+    """The flight of a file, or of a scenario (TOML); what was taken of it and its warnings are said.
 
     start: the text of --start, which comes before the scenario's own. Raises `ServerError`, `InputError`.
     """
     pose = None if start is None else _pose(start, rig)  # first: a file may take long to read
-    how = read_convention(convention)
+    how = read_options(asked)
     if path.suffix == ".toml":
         return _scenario(path, rig, pose)
+    from fullpose_server.formats.importers.columns import UNBOUNDED
     from fullpose_server.formats.trajectory_file import read_trajectory
 
-    trajectory = read_trajectory(path, how)
+    with progress_bar("read") as progress:
+        trajectory = read_trajectory(path, bounds=replace(UNBOUNDED, progress=progress), options=how)
+    tell(path, trajectory)
+    return Flight(trajectory.time, trajectory.q, pose, trajectory.warnings, input_report(path, trajectory))
+
+
+def read_options(asked: ReadingArguments) -> "ReadOptions":
+    """How to read, as a command was told; a convention that is none ends the command."""
+    from fullpose_server.formats.read_options import ReadOptions
+
+    return ReadOptions(
+        convention=None if asked.convention is None else read_convention(asked.convention),
+        profile=asked.profile,
+        strict=asked.strict,
+        bridge_gaps=asked.bridge_gaps,
+        drop_duplicates=asked.drop_duplicates,
+    )
+
+
+def tell(path: Path, trajectory: "Trajectory") -> None:
+    """Say what was taken of a file, and each warning."""
+    taken = trajectory.taken
+    say(f"{path}: read as {taken.format}{f', {taken.table}' if taken.table else ''}: {taken.statement}")
     for caution in trajectory.warnings:
         say(f"{path}: warning: {caution.message}")
-    return Flight(trajectory.time, trajectory.q, pose, trajectory.warnings)
+
+
+def input_report(path: Path, trajectory: "Trajectory") -> dict[str, Any]:
+    """The key `input` of a report."""
+    from fullpose_server.formats.input_report import input_of
+
+    return {"file": str(path), **input_of(trajectory)}
 
 
 def _scenario(path: Path, rig: "Rig", pose: "NDArray[Any] | None") -> Flight:
@@ -49,7 +83,8 @@ def _scenario(path: Path, rig: "Rig", pose: "NDArray[Any] | None") -> Flight:
     if pose is None and scenario.start is not None:
         check_range(scenario.start, rig, f"{path}: start_deg")
         pose = np.array(scenario.start)
-    return Flight(scenario.time, scenario.quaternion, pose)
+    taken = {"file": str(path), "format": "scenario", "profile": "", "convention": "nue", "warnings": []}
+    return Flight(scenario.time, scenario.quaternion, pose, input=taken)
 
 
 def _pose(text: str, rig: "Rig") -> "NDArray[Any]":

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, ToleranceDeg, command
+from fullpose_server.cli._arguments import FlightFile, ReadingArguments, RigName, StartPose, ToleranceDeg, command
 from fullpose_server.cli._exit import DONE
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import check_outputs
@@ -22,8 +22,8 @@ def register(app: typer.Typer) -> None:
     app.command("compare", help="Put methods side by side on one flight and rig.")(command(CompareArguments, compare))
 
 
-@dataclass(frozen=True)
-class CompareArguments:
+@dataclass(frozen=True, kw_only=True)
+class CompareArguments(ReadingArguments):
     """What `fullpose compare` is told."""
 
     flight: FlightFile
@@ -34,7 +34,6 @@ class CompareArguments:
     report: Annotated[Path | None, typer.Option(help="Write the figures as JSON.")] = None
     page: Annotated[Path | None, typer.Option(help="Write table and plots as one self-contained HTML page.")] = None
     start: StartPose = None
-    convention: ConventionName = "nue"
     rate: Annotated[
         float | None, typer.Option(help="Bring the flight to this rate [Hz] first; without it its samples are solved.")
     ] = None
@@ -54,7 +53,7 @@ def compare(given: CompareArguments) -> None:
     asked = variants([text for text in given.methods.split(",") if text.strip()])
     chosen = find_rig(given.rig).rig
     check_outputs({"--report": given.report, "--page": given.page}, given.flight, given.rig)
-    read = read_flight(given.flight, given.convention, chosen, given.start)
+    read = read_flight(given.flight, given, chosen, given.start)
     at, q, told = within_tolerance(read.time, read.q, given.tolerance)
     with progress_bar("compare") as bar:
         order = {one.label: k for k, one in enumerate(asked)}
@@ -64,7 +63,7 @@ def compare(given: CompareArguments) -> None:
                 bar(order[label] * total + done, len(order) * total)
 
         made = make_comparison(given.flight.name, at, q, chosen, asked, read.start, given.rate, progress)
-    report = made.report | told
+    report = made.report | told | {"input": read.input}
     if given.report is not None:
         write_text(given.report, json.dumps(report, indent=2) + "\n")
     if given.page is not None:

@@ -1,16 +1,15 @@
 """`fullpose inspect`: what a recorded flight is made of and what is wrong with it."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from fullpose_server.cli._arguments import ConventionName, command
-from fullpose_server.cli._exit import say
+from fullpose_server.cli._arguments import ReadingArguments, command
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="CSV or Parquet: time_s and one attitude.")]
+File = Annotated[Path, typer.Argument(metavar="FILE", help="A log with one attitude.")]
 
 
 def register(app: typer.Typer) -> None:
@@ -19,30 +18,31 @@ def register(app: typer.Typer) -> None:
     app.command("inspect", help=about)(command(InspectArguments, inspect))
 
 
-@dataclass(frozen=True)
-class InspectArguments:
+@dataclass(frozen=True, kw_only=True)
+class InspectArguments(ReadingArguments):
     """What `fullpose inspect` is told."""
 
     flight: File
     rig: Annotated[str | None, typer.Option(help="Say it of this rig's frames, too: a built-in name or a file.")] = None
     as_json: Annotated[bool, typer.Option("--json", help="The figures and the sentences as JSON.")] = False
-    convention: ConventionName = "nue"
 
 
 def inspect(asked: InspectArguments) -> None:
     """Print the findings, one a line, the warnings first. Exit 2: bad input."""
-    from fullpose_server.cli._flight import read_convention
+    from fullpose_server.cli._flight import input_report, read_options, tell
     from fullpose_server.formats.diagnosis import diagnosis_report
     from fullpose_server.formats.rig_file import find_rig
     from fullpose_server.formats.trajectory_file import read_trajectory
 
     rig = None if asked.rig is None else find_rig(asked.rig).rig
-    flight = read_trajectory(asked.flight, read_convention(asked.convention))
-    for caution in flight.warnings:
-        say(f"{asked.flight}: warning: {caution.message}")
+    # A gap is what is looked for here: it is no reason to say nothing.
+    flight = read_trajectory(asked.flight, options=replace(read_options(asked), bridge_gaps=True))
+    tell(asked.flight, flight)
     report = diagnosis_report(flight.time, flight.q, rig)
     if asked.as_json:
-        typer.echo(json.dumps({"file": str(asked.flight), "convention": flight.convention.value, **report}, indent=2))
+        convention, taken = flight.convention.value, input_report(asked.flight, flight)
+        head = {"file": str(asked.flight), "convention": convention, "input": taken}
+        typer.echo(json.dumps(head | report, indent=2))
         return
     typer.echo(f"{asked.flight}: {report['samples']} samples in {report['duration_s']:.6g} s")
     for finding in report["findings"]:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from fullpose.vocabulary import RemedyKind
-from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, ToleranceDeg, command
+from fullpose_server.cli._arguments import FlightFile, ReadingArguments, RigName, StartPose, ToleranceDeg, command
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import OUT_KINDS, check_outputs
@@ -23,8 +23,8 @@ def register(app: typer.Typer) -> None:
     )
 
 
-@dataclass(frozen=True)
-class RemedyArguments:
+@dataclass(frozen=True, kw_only=True)
+class RemedyArguments(ReadingArguments):
     """What `fullpose remedy` is told."""
 
     flight: FlightFile
@@ -35,7 +35,6 @@ class RemedyArguments:
     frame: Annotated[str | None, typer.Option(help="relax: of this frame alone.")] = None
     limit: Annotated[str | None, typer.Option(help="relax: of position, rate or acceleration alone.")] = None
     start: StartPose = None
-    convention: ConventionName = "nue"
     tolerance: ToleranceDeg = None
 
 
@@ -56,7 +55,7 @@ def remedy(asked: RemedyArguments) -> None:
     request = RemedyRequest(kind, asked.frame, asked.limit)
     request.check(chosen)
     check_outputs({"--out": asked.out, "--report": asked.report}, flight, asked.rig)
-    read = read_flight(flight, asked.convention, chosen, asked.start)
+    read = read_flight(flight, asked, chosen, asked.start)
     attitude = dcm_from_quaternion(read.q)
     told = within(read, attitude, asked.tolerance)
     with progress_bar(kind) as progress:
@@ -76,6 +75,7 @@ def remedy(asked: RemedyArguments) -> None:
     made["remedy"] = found.described
     if kind == RemedyKind.TOLERANCE and found.described["value"]:
         made.update(tolerated(found.described))
+    made["input"] = read.input
     with progress_bar("write") as progress:
         write_solution(asked.out, done.plan.solution, progress)
     if asked.report is not None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fullpose_server.cli._arguments import ConventionName, FlightFile, RigName, StartPose, ToleranceDeg, command
+from fullpose_server.cli._arguments import FlightFile, ReadingArguments, RigName, StartPose, ToleranceDeg, command
 from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail, say
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import OUT_KINDS, check_outputs
@@ -28,11 +28,11 @@ METHODS = (
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
-    app.command("solve", help="Solve the frame angles of a flight (CSV or Parquet).")(command(SolveArguments, solve))
+    app.command("solve", help="Solve the frame angles of a flight.")(command(SolveArguments, solve))
 
 
-@dataclass(frozen=True)
-class SolveArguments:
+@dataclass(frozen=True, kw_only=True)
+class SolveArguments(ReadingArguments):
     """What `fullpose solve` is told."""
 
     flight: FlightFile
@@ -42,7 +42,6 @@ class SolveArguments:
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON.")] = None
     start: StartPose = None
     plot: Annotated[Path | None, typer.Option(help="Write the plots as one HTML page.")] = None
-    convention: ConventionName = "nue"
     option: Annotated[
         list[str] | None, typer.Option("--option", "-o", metavar="NAME=VALUE", help="Option of the method.")
     ] = None
@@ -62,13 +61,14 @@ def solve(asked: SolveArguments) -> None:
     flight, method = asked.flight, asked.method
     chosen = find_rig(asked.rig).rig
     check_outputs({"--out": asked.out, "--report": asked.report, "--plot": asked.plot}, flight, asked.rig)
-    read = read_flight(flight, asked.convention, chosen, asked.start)
+    read = read_flight(flight, asked, chosen, asked.start)
     attitude = dcm_from_quaternion(read.q)
     told = within(read, attitude, asked.tolerance)
     solution, planned = _solve(told, chosen, method, asked.option or [])
     made = told.reported(make_report(solution, verify(solution.time, solution.angles, chosen, attitude)))
     solution = told.measured(solution)
     made["warnings"] = [{"code": c.code, "message": c.message} for c in read.warnings]
+    made["input"] = read.input
     if planned is not None:
         made.update(verdict_report(planned))
     with progress_bar("write") as progress:

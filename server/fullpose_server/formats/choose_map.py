@@ -2,11 +2,15 @@
 
 from dataclasses import dataclass
 
+from pydantic import ValidationError
+
 from fullpose_server.errors import FileError
 from fullpose_server.formats.column_map import ColumnMap
 from fullpose_server.formats.importers.table import Table
-from fullpose_server.formats.profile import Profile, find, shipped
+from fullpose_server.formats.profile import Profile, find, find_profile, shipped
+from fullpose_server.formats.read_options import AS_IT_IS, ReadOptions
 from fullpose_server.formats.trajectory import Convention
+from fullpose_server.formats.visible import visible
 
 
 @dataclass(frozen=True)
@@ -17,23 +21,49 @@ class Choice:
     columns: ColumnMap
     profile: str
     reason: str
+    assumed: str | None = None  # what neither the file nor a person says, and is doubtful
 
 
 OWN = ("fullpose", "fullpose-ned", "fullpose-quaternion")
 
 
-def choose(tables: tuple[Table, ...], convention: Convention | None, profile: Profile | None = None) -> Choice:
-    """The table and map of a file. convention None: the profile's. Raises `FileError` where nothing fits."""
-    if profile is not None:
-        return _given(tables, convention, profile)
+def choose(tables: tuple[Table, ...], options: ReadOptions = AS_IT_IS) -> Choice:
+    """The table and map of a file. Raises `FileError` where nothing fits."""
+    convention = options.convention
+    if options.columns is not None:
+        return _as_told(tables, options.columns)
+    if options.profile is not None:
+        return _given(tables, convention, find_profile(options.profile))
     for table in tables:
         _check_one_attitude(table)
         for each in _candidates(table):
             if (columns := each.bind(table, convention)) is None or not _allowed(each, convention):
                 continue
             _check_once(table, columns)
-            return Choice(table, columns, each.name, _reason(table, each, convention))
+            said = convention is not None or each.axes_named
+            assumed = None if said or each.name in OWN else _assumed(each)
+            return Choice(table, columns, each.name, _reason(table, each, said), assumed)
     raise _nothing_fits(tables[0], convention)
+
+
+def _as_told(tables: tuple[Table, ...], text: str) -> Choice:
+    """The map that a person has made, of the first table that has its columns."""
+    try:
+        columns = ColumnMap.model_validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise FileError("columns", first["msg"], column=key or None, column_word="key") from None
+    for table in tables:
+        if all(name in table.names for name in columns.columns):
+            _check_once(table, columns)
+            return Choice(table, columns, "", "as told")
+    missing = next(name for name in columns.columns if name not in tables[0].names)
+    raise tables[0].error(f"a column {missing} among {listing(tables[0].names)}", missing)
+
+
+def _assumed(profile: Profile) -> str:
+    return f"the axes are assumed to be {profile.axes}, as profile {profile.name} has it: --convention says others"
 
 
 def _given(tables: tuple[Table, ...], convention: Convention | None, profile: Profile) -> Choice:
@@ -44,7 +74,7 @@ def _given(tables: tuple[Table, ...], convention: Convention | None, profile: Pr
             if not _allowed(profile, convention):
                 raise _other_axes(table, profile, convention)
             _check_once(table, columns)
-            return Choice(table, columns, profile.name, "as asked for")
+            return Choice(table, columns, profile.name, f"profile {profile.name}, as asked for")
     table = tables[0]
     missing = profile.missing(table)
     raise table.error(f"{', '.join(missing)} of profile {profile.name} among {listing(table.names)}", missing[0])
@@ -53,19 +83,25 @@ def _given(tables: tuple[Table, ...], convention: Convention | None, profile: Pr
 def _candidates(table: Table) -> list[Profile]:
     profiles = shipped()
     own = [profiles[table.profile]] if table.profile in profiles else []
-    return own + [each for each in profiles.values() if each.table is None or table.name in each.table]
+    return own + [
+        each
+        for each in profiles.values()
+        if each.guessed
+        and (each.table is None or table.name in each.table)
+        and all(find(table, (name,)) is not None for name in each.also)
+    ]
 
 
 def _allowed(profile: Profile, convention: Convention | None) -> bool:
     return convention is None or convention is profile.axes or not profile.axes_named
 
 
-def _reason(table: Table, profile: Profile, convention: Convention | None) -> str:
-    if table.profile == profile.name:
-        return f"as {table.format} has it"
-    if convention is None and not profile.axes_named:
-        return f"by its column names; axes {profile.axes} are assumed, --convention says others"
-    return "by its column names"
+def _reason(table: Table, profile: Profile, said: bool) -> str:
+    by = f"as {table.format} has it" if table.profile == profile.name else "by its column names"
+    if said:
+        return f"profile {profile.name}, {by}"
+    turned = "; its yaw is counted to the left, opposite to a heading" if profile.name == OWN[0] else ""
+    return f"profile {profile.name}, {by}; no convention was given, {profile.axes} is taken{turned}"
 
 
 def _check_one_attitude(table: Table) -> None:
@@ -95,7 +131,7 @@ def _other_axes(table: Table, profile: Profile, convention: Convention | None) -
 def _nothing_fits(table: Table, convention: Convention | None) -> FileError:
     profiles = shipped()
     for each in profiles.values():
-        if each.bind(table) is not None:
+        if each.guessed and each.bind(table) is not None:
             return _other_axes(table, each, convention)
     if find(table, ("time_s",)) is None:
         expected = f"a column time_s among {listing(table.names)}, or a --profile that says which columns are what"
@@ -109,5 +145,5 @@ def _nothing_fits(table: Table, convention: Convention | None) -> FileError:
 
 def listing(names: tuple[str, ...]) -> str:
     """Column names for a message, not too many of them."""
-    shown = ", ".join(name or "(unnamed)" for name in names[:12])
+    shown = ", ".join(visible(name) or "(unnamed)" for name in names[:12])
     return f"{shown}, ... ({len(names)} columns)" if len(names) > 12 else shown or "no columns at all"

@@ -32,6 +32,7 @@ class TimeUnit(StrEnum):
 
     S = "s"
     MS = "ms"
+    TENTH_MS = "0.1ms"
     US = "us"
     NS = "ns"
     MIN = "min"
@@ -40,12 +41,12 @@ class TimeUnit(StrEnum):
     @property
     def seconds(self) -> float:
         """One of it, in seconds."""
-        return {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}[self.value]
+        return {"s": 1.0, "ms": 1e-3, "0.1ms": 1e-4, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}[self.value]
 
     @property
     def per_second(self) -> int:
         """How many are in a second; 0 of those that are longer. Exact, where `seconds` is rounded."""
-        return {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}.get(self.value, 0)
+        return {"s": 1, "ms": 10**3, "0.1ms": 10**4, "us": 10**6, "ns": 10**9}.get(self.value, 0)
 
 
 class AngleUnit(StrEnum):

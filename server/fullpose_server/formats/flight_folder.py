@@ -8,6 +8,7 @@ import numpy as np
 
 from fullpose._typing import Array
 from fullpose_server.formats.caution import Caution
+from fullpose_server.formats.input_report import input_of
 from fullpose_server.formats.mapped import map_doubles
 from fullpose_server.formats.trajectory import Trajectory
 
@@ -25,6 +26,7 @@ class FlightFacts:
     uniform: bool
     peak_body_rate_deg_s: float | None
     warnings: tuple[Caution, ...]
+    input: dict[str, Any]  # what was taken of the file
 
     def to_json(self) -> dict[str, Any]:
         """Values for `json`."""
@@ -67,4 +69,5 @@ def facts_of(trajectory: Trajectory) -> FlightFacts:
         uniform=bool(step.size == 0 or np.ptp(step) <= 1e-6 * float(np.median(step)) + 1e-9),
         peak_body_rate_deg_s=peak,
         warnings=trajectory.warnings,
+        input=input_of(trajectory),
     )

@@ -1,5 +1,6 @@
 """Named profiles: a column map for each tool's files, with the spellings that its versions have (TOML)."""
 
+import re
 import tomllib
 from functools import cache
 from importlib.resources import files
@@ -68,6 +69,8 @@ class Profile(_Part):
     rank: int = 100  # the least is tried first
     axes: Convention
     axes_named: bool = False  # the names or the format say the axes; a person cannot say others
+    also: tuple[ColumnName, ...] = ()  # columns that such a file has beside those that are read
+    guessed: bool = True  # whether it may be taken without being asked for
     table: Spellings | None = None  # of a file with several; None: any
     time: TimeProfile
     euler: EulerProfile | None = None
@@ -132,16 +135,25 @@ def shared_angle_unit(table: Table, names: list[str]) -> AngleUnit | None:
 
 
 def find(table: Table, spellings: Spellings) -> str | None:
-    """The table's name of a column: the very spelling, or what differs in capitals, blanks or a unit in brackets."""
+    """The table's name of a column: the very spelling, else what differs in capitals, blanks or a unit in brackets,
+    else one whose path ends so (`/imu/orientation/x` for `orientation.x`)."""
     for spelling in spellings:
         if spelling in table.names:
             return spelling
     plain = {_plain(name): name for name in reversed(table.names)}
-    return next((plain[_plain(each)] for each in spellings if _plain(each) in plain), None)
+    for spelling in spellings:
+        if (found := plain.get(_plain(spelling))) is not None:
+            return found
+    for spelling in spellings:
+        ending = "/" + _plain(spelling)
+        if several := [name for known, name in plain.items() if known.endswith(ending)]:
+            return several[0] if len(several) == 1 else None
+    return None
 
 
 def _plain(name: str) -> str:
-    return " ".join(unit_in_name(name)[0].casefold().split())
+    words = " ".join(unit_in_name(name)[0].casefold().replace("_", " ").split())
+    return re.sub(r"(?<=[^\d\W])\.(?=[^\W])", "/", words)
 
 
 def _ending(name: str) -> str | None:

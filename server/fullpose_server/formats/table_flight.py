@@ -16,40 +16,86 @@ from fullpose.flight import bad_time, shortest
 from fullpose_server.errors import FileError
 from fullpose_server.formats.caution import Caution
 from fullpose_server.formats.column_map import AngleUnit, ColumnMap, Epoch, EulerMap, QuaternionMap, Sense, TimeMap
+from fullpose_server.formats.gaps import LONG, holes
 from fullpose_server.formats.importers.table import Table
+from fullpose_server.formats.plausibility import Angles, angle_cautions, motion_cautions, time_cautions
+from fullpose_server.formats.read_options import AS_IT_IS, ReadOptions
+from fullpose_server.formats.repaired import with_samples_between, without_duplicates
 from fullpose_server.formats.trajectory import Convention, Taken, Trajectory, continuous
 
+ASKED_FOR = ("bridged", "duplicates")  # what a person has said is right
+MOST_LISTED = 5
 _BLOCK = 65536  # samples converted at once
 _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 _NAMED = {Convention.NUE: "YZX", Convention.NED: "ZYX"}  # the orders of yaw, pitch, roll and of heading, pitch, bank
 
 
-def flight_of(table: Table, columns: ColumnMap, profile: str = "", warnings: tuple[Caution, ...] = ()) -> Trajectory:
-    """The flight of a table. `profile`: where the map is from; `warnings` go before those found here.
+def flight_of(table: Table, columns: ColumnMap, options: ReadOptions = AS_IT_IS) -> Trajectory:
+    """The flight of a table, with its cautions; what was taken is told by its `statement`.
 
     Raises `FileError`: no rows, a value that is not finite, time not increasing or out of range, a quaternion that is
-    none; `TooLargeError` from the table.
+    none, a gap that is not to be bridged, any caution where `options` are strict; `TooLargeError` from the table.
     """
-    loaded = table.load(columns.columns)
+    loaded = dict(table.load(columns.columns))
     if not loaded[columns.time.column].size:
         raise FileError(table.file, "at least one row of samples after the header")
     _check_finite(table, loaded, columns)
+    cautions = list(table.cautions)
+    if options.drop_duplicates:
+        table, loaded, dropped = without_duplicates(table, loaded, columns.time.column)
+        cautions += dropped
     time = stamps(loaded[columns.time.column], columns.time)
     if found := bad_time(time):
         row, expected = found
+        if "twice" in expected:
+            expected += " (--drop-duplicates keeps the first)"
         raise table.error(expected, columns.time.column, shortest(float(loaded[columns.time.column][row])), row)
+    cautions += _checked_gaps(table, time, options)
+    if columns.euler is not None:
+        cautions += angle_cautions(angles_of(table, loaded, columns.euler))
+        time, loaded, added = with_samples_between(table, time, loaded, columns.euler)
+        cautions += added
     q, off = _attitudes(table, loaded, columns)
-    cautions = [*warnings, *table.cautions]
     if off > 1e-3:
         cautions.append(Caution("norm", f"quaternions are up to {off:.2g} off unit length; they were normalised"))
-    if columns.euler is not None and columns.euler.unit is AngleUnit.DEG:
-        cautions += _unit_warnings(*(np.asarray(loaded[name], float) for name in columns.euler.columns))
-    step = np.diff(time)
-    if step.size and float(np.median(step)) >= 1.0:
-        text = f"the median step is {float(np.median(step)):.6g} s: is {columns.time.column} in seconds?"
-        cautions.append(Caution("time-unit", text, columns.time.column))
-    taken = Taken(table.format, profile, table.name, statement(columns))
-    return Trajectory(time, continuous(q), columns.axes, tuple(cautions), taken)
+    q = continuous(q)
+    turned = turn_deg(q)
+    cautions += time_cautions(time, turned, columns.time)
+    cautions += motion_cautions(time, turned, columns.attitude, table.line_of, table.row_word)
+    if options.strict and (doubts := [each for each in cautions if each.code not in ASKED_FOR]):
+        raise FileError(table.file, f"a flight without warnings (--strict), not: {doubts[0].message}", line=None)
+    taken = Taken(table.format, "", table.name, statement(columns))
+    return Trajectory(time, q, columns.axes, tuple(cautions), taken)
+
+
+def turn_deg(q: Array) -> Array:
+    """The angle (n - 1,) [deg] from each attitude of q (n, 4) to the next, the shorter way round."""
+    cosine = np.clip(np.abs(np.einsum("ij,ij->i", q[1:], q[:-1])), 0.0, 1.0)
+    return np.asarray(np.rad2deg(2.0 * np.arctan2(np.sqrt(1.0 - cosine * cosine), cosine)))
+
+
+def angles_of(table: Table, loaded: Mapping[str, Array | Integers], how: EulerMap) -> Angles:
+    """The columns of angles with their places in the file."""
+    first, second, third = (np.asarray(loaded[name], float) for name in how.columns)
+    return Angles(how, (first, second, third), table.line_of, table.row_word)
+
+
+def _checked_gaps(table: Table, time: Array, options: ReadOptions) -> list[Caution]:
+    """What is to be said of gaps. Raises `FileError` for a long one that is not to be bridged."""
+    found = holes(time)
+    long = [hole for hole in found if hole.steps >= LONG]
+    if long and not options.bridge_gaps:
+        more = f", {len(long)} such gaps" if len(long) > 1 else ""
+        expected = f"samples all the way: none from {long[0]}{more}; --bridge-gaps (bridge_gaps) interpolates"
+        raise table.error(expected, row=long[0].row)
+    listed = "; ".join(str(hole) for hole in found[:MOST_LISTED])
+    if not found:
+        return []
+    count = "1 gap" if len(found) == 1 else f"{len(found)} gaps"
+    code = "bridged" if long else "gap"
+    return [
+        Caution(code, f"{count} without samples, flown by interpolation: {listed}", row=table.line_of(found[0].row))
+    ]
 
 
 def stamps(given: Array | Integers, how: TimeMap) -> Array:
@@ -83,7 +129,7 @@ def _check_finite(table: Table, loaded: Mapping[str, Array | Integers], columns:
 
 def _attitudes(table: Table, loaded: Mapping[str, Array | Integers], columns: ColumnMap) -> tuple[Array, float]:
     """Ours (n, 4), and by how much the longest or shortest was off unit length."""
-    rows = loaded[columns.time.column].size
+    rows = loaded[columns.attitude[0]].size
     q, off = np.empty((rows, 4)), 0.0
     for begin in range(0, rows, _BLOCK):  # what is between columns and attitudes is several times as large
         part = slice(begin, begin + _BLOCK)
@@ -126,14 +172,3 @@ def in_our_axes(q: Array, axes: Convention) -> Array:
     if axes is Convention.NED:
         return quaternion_from_ned(q)
     return quaternion_from_enu(q) if axes is Convention.ENU else q
-
-
-def _unit_warnings(first: Array, second: Array, third: Array) -> list[Caution]:
-    """Radians in degree columns look like a flight of tiny angles: inside +-2 pi, the pitch inside +-pi / 2."""
-    turn, quarter = 2.0 * np.pi + 1e-6, 0.5 * np.pi + 1e-6
-    peak = max(float(np.max(np.abs(column))) for column in (first, second, third))
-    inside = float(np.max(np.abs(second))) <= quarter and peak <= turn
-    if inside and peak > 0.1:
-        text = f"all angles are within {peak:.4g} deg: if the file is in radians, convert it to degrees"
-        return [Caution("angle-unit", text)]
-    return []

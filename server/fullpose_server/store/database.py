@@ -14,7 +14,7 @@ from fullpose_server.location import Location, PostgresqlUrl
 from fullpose_server.store import postgresql, sqlite
 from fullpose_server.store.tables import Table
 
-HEAD = "0008"  # the newest revision in migrations/versions
+HEAD = "0009"  # the newest revision in migrations/versions
 WAIT_S = 2.0  # for another program that holds it: the threads that wait here are not many
 MIGRATIONS = Path(__file__).parent / "migrations"
 

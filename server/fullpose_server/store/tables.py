@@ -49,6 +49,7 @@ class TrajectoryRow(Table):
     uniform: Mapped[bool]
     peak_body_rate_deg_s: Mapped[float | None] = mapped_column(Float)
     warnings: Mapped[list[Any]]
+    input: Mapped[dict[str, Any] | None]  # what was taken of the file; None: stored before it was kept
     created: Mapped[float] = mapped_column(Float)
     tags: Mapped[list[Any]]
     notes: Mapped[str]

@@ -1,11 +1,13 @@
 """Uploads through a real server: what is right is stored by its hash, what is wrong is one clear problem."""
 
 import io
+import json
 import math
 import socket
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -79,12 +81,65 @@ def test_a_bad_file_is_one_clear_problem_and_nothing_is_stored(
 
 
 def test_radians_are_warned_about(server: LiveServer) -> None:
-    body = server.upload("time_s,yaw_deg,pitch_deg,roll_deg\n0,1,1,1\n0.5,1.5,1.2,3.1\n").json()
-    assert [warning["code"] for warning in body["warnings"]] == ["angle-unit"]
+    body = server.upload("time_s,yaw_deg,pitch_deg,roll_deg\n0,1,1,1\n0.1,1.5,1.2,3.1\n").json()
+    assert [warning["column"] for warning in body["warnings"]] == ["yaw_deg", "pitch_deg", "roll_deg"]
+    assert {warning["code"] for warning in body["warnings"]} == {"angle-unit"}
 
 
 def test_an_unknown_convention(server: LiveServer) -> None:
     assert "xyz" in problem(server.upload(convention="xyz"), 422, "validation")["detail"]
+
+
+GAP = "time_s,heading_deg,pitch_deg,bank_deg\n" + "".join(f"{0.1 * k},{k},0,0\n" for k in range(40) if not 10 < k < 25)
+
+
+def test_a_gap_is_bridged_when_asked_and_kept_with_the_flight(server: LiveServer) -> None:
+    body = problem(server.upload(GAP), 422, "file")
+    assert "none from 1 s to 2.5 s (15 median steps)" in body["detail"]
+    stored_as = server.upload(GAP, bridge_gaps="true").json()
+    told = stored_as["input"]
+    assert (told["profile"], told["convention"], told["format"]) == ("fullpose-ned", "ned", "csv")
+    assert [warning["code"] for warning in told["warnings"]] == ["bridged"]
+    assert server.http.get(f"/trajectories/{stored_as['sha256']}").json()["input"] == told
+
+
+TUM = "# timestamp tx ty tz qx qy qz qw\n" + "".join(f"{0.02 * k} 0 0 0 0 0 0 1\n" for k in range(20))
+
+
+def preview(server: LiveServer, text: str, **fields: str) -> dict[str, Any]:
+    answer = server.http.post("/trajectories/preview", data=fields, files={"file": ("flight.txt", text)})
+    assert answer.status_code == 200, answer.text
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+def test_a_preview_stores_nothing_and_says_what_would_be_taken(server: LiveServer) -> None:
+    before = stored(server)
+    found = preview(server, TUM)
+    assert (found["profile"], found["names"][0], found["head"][0][-1]) == ("tum", "timestamp", "1")
+    assert found["columns"]["quaternion"]["columns"] == ["qw", "qx", "qy", "qz"]
+    assert [warning["code"] for warning in found["flight"]["warnings"]] == ["axes"]
+    assert found["flight"]["samples"] == 20
+    assert stored(server) == before
+    assert list((server.settings.data_dir / "uploads").iterdir()) == []
+
+
+def test_a_preview_with_columns_as_a_person_says(server: LiveServer) -> None:
+    text = "a,b,c,d\n" + "".join(f"{20 * k},0.01,0.02,0.03\n" for k in range(20))
+    assert "a column time_s among a, b, c, d" in preview(server, text)["problem"]
+    columns: dict[str, Any] = {"axes": "ned", "time": {"column": "a", "unit": "ms"}}
+    columns["euler"] = {"columns": ["b", "c", "d"], "order": "ZYX", "unit": "rad"}
+    found = preview(server, text, columns=json.dumps(columns))
+    assert found["problem"] is None
+    np.testing.assert_allclose(found["flight"]["time_s"], 0.02 * np.arange(20), atol=1e-15)
+    np.testing.assert_allclose(found["flight"]["yaw_deg"], -np.degrees(0.01), atol=1e-12)
+
+
+@pytest.mark.parametrize("fields", [{"profile": "/etc/passwd.toml"}, {"strict": "perhaps"}, {"columns": "{}"}])
+def test_what_is_no_way_to_read(server: LiveServer, fields: dict[str, str]) -> None:
+    answer = server.upload(TUM, "flight.txt", **fields)
+    assert answer.status_code == 422
+    assert next(iter(fields)) in answer.json()["detail"]
 
 
 def test_a_form_without_a_file_and_a_body_that_is_neither(server: LiveServer) -> None:

@@ -174,11 +174,18 @@ def test_time_in_milliseconds_is_pointed_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "content",
-    [b"\x89PNG\r\n\x1a\n" + bytes(range(256)), b"\x00" * 100, bytes(range(128, 256)) * 20, b"\x1f\x8b\x08abc"],
+    ("content", "told"),
+    [
+        (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), "a PNG image"),
+        (b"\x00" * 100, "another binary file"),
+        (bytes(range(128, 256)) * 20, "another binary file"),
+        (b"\x1f\x8b\x08abc", "a gzip file"),
+        (b"PK\x03\x04\x00\x00", "a ZIP archive"),
+        (b"%PDF-1.7\n\x00", "a PDF document"),
+    ],
 )
-def test_another_binary_file(tmp_path: Path, content: bytes) -> None:
-    assert "binary" in str(refused(tmp_path, content))
+def test_another_file_is_named_for_what_it_is(tmp_path: Path, content: bytes, told: str) -> None:
+    assert told in str(refused(tmp_path, content))
 
 
 def test_parquet_that_is_cut_off(tmp_path: Path) -> None:
@@ -196,8 +203,7 @@ def test_parquet_with_text_where_numbers_should_be_and_with_nulls(tmp_path: Path
         assert expected in str(refused(tmp_path, path.read_bytes()))
 
 
-def test_tabs_or_semicolons_and_a_missing_header(tmp_path: Path) -> None:
-    assert "commas" in str(refused(tmp_path, HEADER.replace(",", ";") + "0;1;2;3\n"))
+def test_a_missing_header(tmp_path: Path) -> None:
     assert "header" in str(refused(tmp_path, "0,1,2,3\n1,1,2,3\n"))
 
 

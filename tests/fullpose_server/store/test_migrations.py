@@ -220,6 +220,7 @@ def test_all_rows_of_a_revision_are_read_by_today_s_code(filled: tuple[Location,
     database = Database(location)
     (flight,) = TrajectoryStore(database, tmp_path / "trajectories").all(wanted=Wanted.of("üBERflug", None))
     assert (flight.sha256, flight.name, flight.created, flight.uniform) == (FLIGHT, "Überflug", 1000.25, True)
+    assert flight.input is None
     assert flight.warnings == [{"code": "c", "message": "m"}]
     assert (flight.tags, flight.notes) == ((["old"], "kept") if revision >= "0007" else ([], ""))
     plans = PlanStore(database, tmp_path / "plans")

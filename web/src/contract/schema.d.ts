@@ -918,6 +918,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/trajectories/preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview File
+         * @description Look at a file and store nothing: its first rows, what its columns are taken for, and the flight that makes.
+         */
+        post: operations["preview_file_api_v1_trajectories_preview_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/users": {
         parameters: {
             query?: never;
@@ -1138,6 +1158,12 @@ export interface components {
              */
             status: "ok" | "degraded";
         };
+        /**
+         * AngleUnit
+         * @description What an angle counts.
+         * @enum {string}
+         */
+        AngleUnit: "deg" | "rad" | "centideg";
         /** Arm */
         Arm: {
             /** @default {} */
@@ -1267,6 +1293,16 @@ export interface components {
          * @enum {string}
          */
         Certainty: "checked" | "grid_complete" | "evidence" | "complete";
+        /**
+         * ColumnMap
+         * @description What the columns of a table are.
+         */
+        ColumnMap: {
+            axes: components["schemas"]["Convention"];
+            euler?: components["schemas"]["EulerMap"] | null;
+            quaternion?: components["schemas"]["QuaternionMap"] | null;
+            time: components["schemas"]["TimeMap"];
+        };
         /**
          * CommandDone
          * @description A command that was accepted, and what it gave.
@@ -1428,6 +1464,12 @@ export interface components {
          */
         Consequence: "another_frame" | "same_frame" | "not_named";
         /**
+         * Convention
+         * @description The axes an attitude was written in (mathematics, section 1).
+         * @enum {string}
+         */
+        Convention: "nue" | "ned" | "enu";
+        /**
          * DeviationOut
          * @description By how much the flight that is flown differs from the samples as they were given.
          */
@@ -1552,6 +1594,12 @@ export interface components {
             /** Write Us */
             write_us: number;
         };
+        /**
+         * Epoch
+         * @description Where the flight's time begins.
+         * @enum {string}
+         */
+        Epoch: "file" | "first";
         /** Estop */
         Estop: {
             /** @default {} */
@@ -1562,6 +1610,25 @@ export interface components {
              */
             command: "estop";
             lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * EulerMap
+         * @description Three turns about the body's own axes, one after the other; the axes are those of `axes`.
+         */
+        EulerMap: {
+            /** Columns */
+            columns: [
+                string,
+                string,
+                string
+            ];
+            /**
+             * Order
+             * @enum {string}
+             */
+            order: "XYZ" | "XZY" | "YXZ" | "YZX" | "ZXY" | "ZYX" | "XYX" | "XZX" | "YXY" | "YZY" | "ZXZ" | "ZYZ";
+            /** @default deg */
+            unit: components["schemas"]["AngleUnit"];
         };
         /**
          * ExportKind
@@ -1812,6 +1879,36 @@ export interface components {
              */
             command: "home";
             lease?: components["schemas"]["LeaseToken"] | null;
+        };
+        /**
+         * InputOut
+         * @description What was taken of a file, and what is doubtful about it.
+         */
+        InputOut: {
+            /**
+             * Convention
+             * @enum {string}
+             */
+            convention: "nue" | "ned" | "enu";
+            /** Format */
+            format: string;
+            /**
+             * Profile
+             * @description The named profile; empty where the columns were given
+             */
+            profile: string;
+            /**
+             * Statement
+             * @description Columns, units, order, sense, axes and clock, in words
+             */
+            statement: string;
+            /**
+             * Table
+             * @description Of a file that has several; empty otherwise
+             */
+            table: string;
+            /** Warnings */
+            warnings: components["schemas"]["Notice"][];
         };
         /** IterationsOut */
         IterationsOut: {
@@ -2421,6 +2518,16 @@ export interface components {
             ];
         };
         /**
+         * NamedProfile
+         * @description A shipped profile whose columns a file has.
+         */
+        NamedProfile: {
+            /** About */
+            about: string;
+            /** Name */
+            name: string;
+        };
+        /**
          * NearDuplicate
          * @description A sample whose stamp all but repeats the one before.
          */
@@ -2466,8 +2573,17 @@ export interface components {
         Notice: {
             /** Code */
             code: string;
+            /** Column */
+            column?: string | null;
             /** Message */
             message: string;
+            /**
+             * Row
+             * @description Line of a text, row of another file; the first is 1
+             */
+            row?: number | null;
+            /** Value */
+            value?: string | null;
         };
         /** Opened */
         Opened: {
@@ -2936,6 +3052,96 @@ export interface components {
              * @description In what is rounded: degrees, or a quaternion's component
              */
             unit: number;
+        };
+        /**
+         * QuaternionMap
+         * @description A unit quaternion.
+         */
+        QuaternionMap: {
+            /** Columns */
+            columns: [
+                string,
+                string,
+                string,
+                string
+            ];
+            /** @default body_to_reference */
+            sense: components["schemas"]["Sense"];
+        };
+        /**
+         * ReadFlight
+         * @description The flight that a file makes; columns of equal length, thinned.
+         */
+        ReadFlight: {
+            /**
+             * Convention
+             * @enum {string}
+             */
+            convention: "nue" | "ned" | "enu";
+            /** Duration S */
+            duration_s: number;
+            /** Pitch Deg */
+            pitch_deg: number[];
+            /** Q */
+            q: [
+                number,
+                number,
+                number,
+                number
+            ][];
+            /** Roll Deg */
+            roll_deg: number[];
+            /**
+             * Samples
+             * @description Of the whole flight
+             */
+            samples: number;
+            /** Statement */
+            statement: string;
+            /** Time S */
+            time_s: number[];
+            /** Warnings */
+            warnings: components["schemas"]["Notice"][];
+            /** Yaw Deg */
+            yaw_deg: number[];
+        };
+        /**
+         * ReadingPreview
+         * @description A file looked at before it is stored: what its columns are taken for, and the flight that this makes.
+         */
+        ReadingPreview: {
+            columns: components["schemas"]["ColumnMap"] | null;
+            flight: components["schemas"]["ReadFlight"] | null;
+            /** Format */
+            format: string;
+            /**
+             * Head
+             * @description The first rows, as text; what cannot be seen is escaped
+             */
+            head: string[][];
+            /** Names */
+            names: string[];
+            /**
+             * Problem
+             * @description Why it makes no flight as it is read
+             */
+            problem: string | null;
+            /**
+             * Profile
+             * @description That was taken; null where none fits, empty where the columns were given
+             */
+            profile: string | null;
+            /** Profiles */
+            profiles: components["schemas"]["NamedProfile"][];
+            /** Table */
+            table: string;
+            /** Tables */
+            tables: string[];
+            /**
+             * Units
+             * @description Of each column, as the file says it
+             */
+            units: (string | null)[];
         };
         /**
          * Record
@@ -3484,6 +3690,12 @@ export interface components {
              */
             type: "seek";
         };
+        /**
+         * Sense
+         * @description What a quaternion takes from where to where: v_reference = q v_body q* is `body_to_reference`.
+         * @enum {string}
+         */
+        Sense: "body_to_reference" | "reference_to_body";
         /** ServerLimits */
         ServerLimits: {
             /** Max Solve Samples */
@@ -4037,6 +4249,24 @@ export interface components {
             write_us: (number | null)[];
         };
         /**
+         * TimeMap
+         * @description The column of the stamps.
+         */
+        TimeMap: {
+            /** Column */
+            column: string;
+            /** @default file */
+            epoch: components["schemas"]["Epoch"];
+            /** @default s */
+            unit: components["schemas"]["TimeUnit"];
+        };
+        /**
+         * TimeUnit
+         * @description What a stamp counts.
+         * @enum {string}
+         */
+        TimeUnit: "s" | "ms" | "0.1ms" | "us" | "ns" | "min" | "h";
+        /**
          * TokenGiven
          * @description A new token. `secret` is told here once, and nowhere else.
          */
@@ -4159,6 +4389,12 @@ export interface components {
              */
             bank_deg: number[] | null;
             /**
+             * Bridge Gaps
+             * @description Fly through gaps by interpolation
+             * @default false
+             */
+            bridge_gaps: boolean;
+            /**
              * Convention
              * @default nue
              * @enum {string}
@@ -4216,6 +4452,8 @@ export interface components {
             created_at: string;
             /** Duration S */
             duration_s: number;
+            /** @description What was taken of the file; null of flights stored before it was kept */
+            input: components["schemas"]["InputOut"] | null;
             /** Name */
             name: string;
             /** Notes */
@@ -8770,17 +9008,36 @@ export interface operations {
                 "application/json": components["schemas"]["TrajectoryIn"];
                 "multipart/form-data": {
                     /**
-                     * @default nue
+                     * @description Fly through gaps by interpolation; they are refused otherwise
+                     * @default false
+                     */
+                    bridge_gaps?: boolean;
+                    /** @description A column map as JSON (`ColumnMap`), in the place of a profile */
+                    columns?: string;
+                    /**
+                     * @description The axes it is written in. Default: those of its profile
                      * @enum {string}
                      */
                     convention?: "nue" | "ned" | "enu";
                     /**
+                     * @description Of samples with one stamp, keep the first
+                     * @default false
+                     */
+                    drop_duplicates?: boolean;
+                    /**
                      * Format: binary
-                     * @description CSV or Parquet
+                     * @description A log with one attitude
                      */
                     file: string;
                     /** @description Default: the file's name */
                     name?: string;
+                    /** @description Which column is what, by a shipped name. Default: guessed */
+                    profile?: string;
+                    /**
+                     * @description Refuse a flight that there is a warning about
+                     * @default false
+                     */
+                    strict?: boolean;
                 };
             };
         };
@@ -9438,6 +9695,161 @@ export interface operations {
             };
             /** @description The database or a process that it takes does not answer */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_file_api_v1_trajectories_preview_post: {
+        parameters: {
+            query?: {
+                points?: number;
+            };
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "multipart/form-data": {
+                    /**
+                     * @description Fly through gaps by interpolation; they are refused otherwise
+                     * @default false
+                     */
+                    bridge_gaps?: boolean;
+                    /** @description A column map as JSON (`ColumnMap`), in the place of a profile */
+                    columns?: string;
+                    /**
+                     * @description The axes it is written in. Default: those of its profile
+                     * @enum {string}
+                     */
+                    convention?: "nue" | "ned" | "enu";
+                    /**
+                     * @description Of samples with one stamp, keep the first
+                     * @default false
+                     */
+                    drop_duplicates?: boolean;
+                    /** Format: binary */
+                    file: string;
+                    /** @description Which column is what, by a shipped name. Default: guessed */
+                    profile?: string;
+                    /**
+                     * @description Refuse a flight that there is a warning about
+                     * @default false
+                     */
+                    strict?: boolean;
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReadingPreview"];
+                };
+            };
+            /** @description The body is not what its type says */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rest of the request did not come */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Larger than a bound of this server */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many at once: try again later */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No room on the disk */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -6,7 +6,7 @@ Nothing of what a client sends is parsed in the server's own process: neither it
 import json
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
@@ -20,10 +20,11 @@ from fullpose_server.api.known_errors import known_problem
 from fullpose_server.api.problems import ApiError, validation_problem
 from fullpose_server.api.schemas.plans import ReportOut
 from fullpose_server.api.schemas.solve import SolveIn, SolveOut
-from fullpose_server.api.schemas.trajectories import TrajectoryIn
+from fullpose_server.api.schemas.trajectories import ReadingPreview, TrajectoryIn
 from fullpose_server.formats.flight_folder import read_arrays, write_flight
 from fullpose_server.formats.importers.columns import Bounds, check_rows
 from fullpose_server.formats.importers.table import table_of
+from fullpose_server.formats.read_options import ReadOptions
 from fullpose_server.formats.trajectory import Convention, Trajectory
 from fullpose_server.formats.trajectory_file import flight_in, read_trajectory
 from fullpose_server.planning.worker import Maker, Progress
@@ -34,6 +35,7 @@ class Work(StrEnum):
 
     READ_FILE = "read_file"
     READ_JSON = "read_json"
+    PREVIEW = "preview"
     SOLVE = "solve"
     TOLERANCE = "tolerance"
     DIAGNOSE = "diagnose"
@@ -57,8 +59,27 @@ class ReadRequest(Request):
     folder: str
     rows: int
     columns: int
+    bytes: int = 0  # that a packed file may unpack to
     file: str = ""
-    convention: str = Convention.NUE
+    how: dict[str, Any] = field(default_factory=dict)  # the fields of `ReadOptions`
+
+    @property
+    def bounds(self) -> Bounds:
+        """How much of it is read."""
+        return Bounds(self.rows, self.columns, self.bytes)
+
+    @property
+    def options(self) -> ReadOptions:
+        """How it is to be read."""
+        convention = self.how.get("convention")
+        return ReadOptions(**{**self.how, "convention": None if convention is None else Convention(convention)})
+
+
+@dataclass(frozen=True)
+class PreviewRequest(ReadRequest):
+    """An upload that is looked at and not stored: `folder` is where the answer goes."""
+
+    points: int = 0
 
 
 @dataclass(frozen=True)
@@ -93,10 +114,17 @@ class DiagnoseRequest(Request):
 
 def _read_file(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
     asked = ReadRequest(**values)
-    source = Path(asked.source)
-    bounds = Bounds(asked.rows, asked.columns)
-    flight = read_trajectory(source, Convention(asked.convention), asked.file, bounds)
+    flight = read_trajectory(Path(asked.source), name=asked.file, bounds=asked.bounds, options=asked.options)
     return _written(asked, flight, "")
+
+
+def _preview(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    from fullpose_server.formats.reading_preview import reading_preview  # pages' thinning, for those who look first
+
+    asked = PreviewRequest(**values)
+    document = reading_preview(Path(asked.source), asked.file, asked.bounds, asked.options, asked.points)
+    Path(asked.folder).write_text(ReadingPreview.model_validate(document).model_dump_json(), encoding="utf-8")
+    return {}
 
 
 def _read_json(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
@@ -109,7 +137,9 @@ def _read_json(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]
     check_rows(len(model.time_s), Bounds(asked.rows, asked.columns), model.name)
     columns = {name: np.array(column, dtype=np.float64) for name, column in model.columns().items()}
     table = replace(table_of(model.name, "json", columns, row_word="sample"), line_of=lambda row: row)
-    return _written(asked, flight_in((table,), Convention(model.convention)), model.name)
+    return _written(
+        asked, flight_in((table,), ReadOptions(Convention(model.convention), bridge_gaps=model.bridge_gaps)), model.name
+    )
 
 
 def _written(asked: ReadRequest, flight: Trajectory, name: str) -> dict[str, Any]:
@@ -194,6 +224,7 @@ def _prewarm(_values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
 MAKERS: dict[str, Maker] = {
     Work.READ_FILE: _read_file,
     Work.READ_JSON: _read_json,
+    Work.PREVIEW: _preview,
     Work.SOLVE: _solve,
     Work.TOLERANCE: _tolerance,
     Work.DIAGNOSE: _diagnose,

@@ -16,18 +16,19 @@ from starlette.responses import FileResponse
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.labels import WantedDep, changed
-from fullpose_server.api.offload.work import DiagnoseRequest, ReadRequest, ToleranceRequest, Work
+from fullpose_server.api.offload.work import DiagnoseRequest, PreviewRequest, ReadRequest, ToleranceRequest, Work
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
+from fullpose_server.api.reading import READING_FIELDS, reading_options
 from fullpose_server.api.schemas.base import Name, Notice
 from fullpose_server.api.schemas.diagnosis import DiagnosisOut
 from fullpose_server.api.schemas.labels import LabelsIn
-from fullpose_server.api.schemas.trajectories import ToleranceEffect, TrajectoryOut, TrajectoryPreview
+from fullpose_server.api.schemas.trajectories import ReadingPreview, ToleranceEffect, TrajectoryOut, TrajectoryPreview
 from fullpose_server.api.uploads import receive_body, receive_form
 from fullpose_server.errors import InUseError
 from fullpose_server.formats.flight_folder import FlightFacts, read_arrays
-from fullpose_server.formats.trajectory import Convention, euler_deg
+from fullpose_server.formats.trajectory import euler_deg
 from fullpose_server.pages.thin import thin
 from fullpose_server.store.keyset import Key
 from fullpose_server.store.tables import TrajectoryRow
@@ -39,9 +40,9 @@ _FORM = {
     "type": "object",
     "required": ["file"],
     "properties": {
-        "file": {"type": "string", "format": "binary", "description": "CSV or Parquet"},
+        "file": {"type": "string", "format": "binary", "description": "A log with one attitude"},
         "name": {"type": "string", "description": "Default: the file's name"},
-        "convention": {"type": "string", "enum": [c.value for c in Convention], "default": Convention.NUE.value},
+        **READING_FIELDS,
     },
 }
 UPLOAD_BODY = {
@@ -78,7 +79,7 @@ async def add_trajectory(request: Request, response: Response, services: Service
             upload = await receive_form(request, source, settings.max_upload_bytes)
             file = upload.filename or "upload"
             asked = _read_request(services, source, folder)
-            asked = replace(asked, file=file, convention=_convention(upload.fields.get("convention")))
+            asked = replace(asked, file=file, how=reading_options(upload.fields))
             made = await services.offload.run(Work.READ_FILE, asked.to_json())
             name = upload.fields.get("name", "").strip() or Path(file).stem or file
         elif kind == "application/json":
@@ -98,6 +99,53 @@ async def add_trajectory(request: Request, response: Response, services: Service
     return _out(row)
 
 
+_PREVIEW_BODY = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["file"],
+                    "properties": {"file": {"type": "string", "format": "binary"}, **READING_FIELDS},
+                }
+            }
+        },
+    }
+}
+
+
+@router.post(
+    "/preview", response_model=ReadingPreview, openapi_extra=_PREVIEW_BODY, dependencies=CHANGE, responses=BUSY
+)
+async def preview_file(
+    request: Request, services: ServicesDep, points: Annotated[int, Query(ge=2, le=20_000)] = 500
+) -> FileResponse:
+    """Look at a file and store nothing: its first rows, what its columns are taken for, and the flight that makes."""
+    settings = services.settings
+    source, answer = services.uploads / uuid4().hex, services.uploads / uuid4().hex
+    try:
+        upload = await receive_form(request, source, settings.max_upload_bytes)
+        asked = PreviewRequest(
+            source=str(source),
+            folder=str(answer),
+            rows=settings.max_upload_rows,
+            columns=settings.max_upload_columns,
+            bytes=settings.max_upload_bytes,
+            file=upload.filename or "upload",
+            how=reading_options(upload.fields),
+            points=points,
+        )
+        await services.offload.run(Work.PREVIEW, asked.to_json())
+    except BaseException:
+        answer.unlink(missing_ok=True)
+        raise
+    finally:
+        source.unlink(missing_ok=True)
+    done = BackgroundTask(answer.unlink, missing_ok=True)
+    return FileResponse(answer, media_type="application/json", background=done)
+
+
 def _announced(request: Request) -> int:
     """Bytes that are to come; they are stored twice, as they are and as arrays, of about the same size."""
     length = request.headers.get("content-length", "")
@@ -106,7 +154,9 @@ def _announced(request: Request) -> int:
 
 def _read_request(services: Services, source: Path, folder: Path) -> ReadRequest:
     settings = services.settings
-    return ReadRequest(str(source), str(folder), settings.max_upload_rows, settings.max_upload_columns)
+    return ReadRequest(
+        str(source), str(folder), settings.max_upload_rows, settings.max_upload_columns, settings.max_upload_bytes
+    )
 
 
 def _clear(source: Path, folder: Path) -> None:
@@ -201,16 +251,6 @@ def remove_trajectory(sha256: str, services: ServicesDep) -> None:
         services.trajectories.remove(sha256)
     except InUseError as error:
         raise ApiError(409, "in-use", str(error)) from None
-
-
-def _convention(text: str | None) -> Convention:
-    if text is None or not text.strip():
-        return Convention.NUE
-    try:
-        return Convention(text.strip())
-    except ValueError:
-        known = ", ".join(c.value for c in Convention)
-        raise ApiError(422, "validation", f"convention: {text.strip()[:40]!r}: expected one of {known}") from None
 
 
 def _out(row: TrajectoryRow) -> TrajectoryOut:

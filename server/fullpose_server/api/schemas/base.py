@@ -78,3 +78,6 @@ class Notice(Wire):
 
     code: str
     message: str
+    column: str | None = None
+    row: int | None = Field(default=None, description="Line of a text, row of another file; the first is 1")
+    value: str | None = None

@@ -5,9 +5,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fullpose_server.api.schemas.base import Four, Notice, Number, Sha256, Wire
+from fullpose_server.api.schemas.base import Four, Notice, Number, Sha256, Truth, Wire
 from fullpose_server.api.schemas.labels import LabelledOut
 from fullpose_server.api.schemas.plans import DeviationOut
+from fullpose_server.formats.column_map import ColumnMap
 
 ConventionName = Literal["nue", "ned", "enu"]
 Samples = Annotated[list[Number], Field(min_length=1, fail_fast=True)]
@@ -21,6 +22,7 @@ class TrajectoryIn(Wire):
 
     name: str = Field(min_length=1, max_length=200)
     convention: ConventionName = "nue"
+    bridge_gaps: Truth = Field(default=False, description="Fly through gaps by interpolation")
     time_s: Samples
     yaw_deg: Samples | None = None
     heading_deg: Samples | None = None
@@ -53,6 +55,55 @@ class TrajectoryIn(Wire):
         return table
 
 
+class InputOut(Wire):
+    """What was taken of a file, and what is doubtful about it."""
+
+    format: str
+    table: str = Field(description="Of a file that has several; empty otherwise")
+    profile: str = Field(description="The named profile; empty where the columns were given")
+    convention: ConventionName
+    statement: str = Field(description="Columns, units, order, sense, axes and clock, in words")
+    warnings: list[Notice]
+
+
+class ReadFlight(Wire):
+    """The flight that a file makes; columns of equal length, thinned."""
+
+    samples: int = Field(description="Of the whole flight")
+    duration_s: float
+    convention: ConventionName
+    statement: str
+    warnings: list[Notice]
+    time_s: list[float]
+    yaw_deg: list[float]
+    pitch_deg: list[float]
+    roll_deg: list[float]
+    q: list[Four]
+
+
+class NamedProfile(Wire):
+    """A shipped profile whose columns a file has."""
+
+    name: str
+    about: str
+
+
+class ReadingPreview(Wire):
+    """A file looked at before it is stored: what its columns are taken for, and the flight that this makes."""
+
+    format: str
+    table: str
+    tables: list[str]
+    names: list[str]
+    units: list[str | None] = Field(description="Of each column, as the file says it")
+    head: list[list[str]] = Field(description="The first rows, as text; what cannot be seen is escaped")
+    profiles: list[NamedProfile]
+    profile: str | None = Field(description="That was taken; null where none fits, empty where the columns were given")
+    columns: ColumnMap | None
+    problem: str | None = Field(description="Why it makes no flight as it is read")
+    flight: ReadFlight | None
+
+
 class TrajectoryOut(LabelledOut):
     """A stored flight. Its address is the SHA-256 of the attitude samples, whatever file they came in."""
 
@@ -60,6 +111,7 @@ class TrajectoryOut(LabelledOut):
     source_sha256: Sha256 = Field(description="SHA-256 of the uploaded bytes")
     name: str
     convention: ConventionName
+    input: InputOut | None = Field(description="What was taken of the file; null of flights stored before it was kept")
     source_format: str = Field(description="csv, parquet, json, or another format that is read")
     source_bytes: int
     samples: int

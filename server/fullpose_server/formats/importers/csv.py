@@ -1,135 +1,178 @@
-"""A flight from comma-separated text.
+"""A table from text: commas, semicolons, tabs, bars or blanks between the cells.
 
 Speed comes from Arrow; where Arrow refuses a file, a slow second pass finds the line to name.
 """
 
 import csv
 import itertools
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
-from fullpose._typing import Array
+from fullpose._typing import Array, Integers
 from fullpose_server.errors import FileError
+from fullpose_server.formats.caution import Caution
 from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds, Filling, check_columns, check_rows
+from fullpose_server.formats.importers.dialect import HEAD_LINES, WHITE, Dialect, is_comment, is_number, sniff
+from fullpose_server.formats.importers.row_stream import RowStream
 from fullpose_server.formats.importers.table import Columns, Table
+from fullpose_server.formats.importers.text_source import TextSource, text_source
+from fullpose_server.formats.visible import visible, without_invisible
 
-_HEADER_BYTES = 1_000_000
+_FIRST_LINE = 1_000_000
+_BLOCK_BYTES = 1024 * 1024  # that Arrow reads at once
+_HEAD_ROWS = 8
+_LONG = re.compile(r"-?\d{16,19}")  # stamps that a double would round
 
 
 @dataclass(frozen=True)
-class _Header:
-    names: list[str]
-    lines: int  # up to and with the header line
+class _Text:
+    source: TextSource
+    dialect: Dialect
+    bounds: Bounds
+    integers: frozenset[str]  # columns that are whole numbers too long for doubles
+
+    @property
+    def file(self) -> str:
+        return self.source.file
 
 
 def read_tables(path: Path, file: str, bounds: Bounds = UNBOUNDED) -> tuple[Table, ...]:
     """The one table; `file` is its name in messages. Raises `FileError`, `TooLargeError`."""
-    header = _header(path, file)
-    check_columns(len(header.names), bounds, file)
+    source = text_source(path, file, bounds)
+    lines = _first_lines(source)
+    dialect = sniff(lines, file)
+    check_columns(len(dialect.names), bounds, file)
+    text = _Text(source, dialect, bounds, frozenset())
+    head = tuple(tuple(cells) for _, cells in itertools.islice(_rows(text), _HEAD_ROWS))
+    integers = {
+        name
+        for k, name in enumerate(dialect.names)
+        if head and all(len(row) > k and _LONG.fullmatch(row[k].strip()) for row in head)
+    }
+    text = _Text(source, dialect, bounds, frozenset(integers))
     table = Table(
         file=file,
         format="csv",
-        names=tuple(header.names),
-        load=partial(_load, path, file, header, bounds),
-        line_of=lambda row: _line_of(path, file, header, row),
+        names=dialect.names,
+        load=partial(_load, text),
+        units=dialect.units,
+        line_of=partial(_line_of, text),
         row_word="line",
-        header_line=header.lines,
-        head=tuple(tuple(cells) for _, cells in itertools.islice(_rows(path, file, header), 8)),
+        header_line=dialect.header_line or None,
+        cautions=tuple(Caution("invisible", said) for said in dialect.said),
+        head=head,
     )
     return (table,)
 
 
-def _load(path: Path, file: str, header: _Header, bounds: Bounds, wanted: Sequence[str]) -> Columns:
-    try:
-        return _columns(path, file, header, tuple(wanted), bounds)
-    except pa.ArrowInvalid as error:
-        if "Empty CSV" in str(error):
-            raise FileError(file, "at least one row of samples after the header") from None
-        raise _diagnose(path, file, header, tuple(wanted), str(error)) from None
+def _first_lines(source: TextSource) -> list[str]:
+    """The first lines, for the dialect. Raises `FileError` where they are none."""
+    lines = []
+    for number, line in enumerate(itertools.islice(source.lines(), HEAD_LINES), start=1):
+        if "\r" in line:
+            raise FileError(source.file, "lines that end in LF or CR LF, not in CR alone", line=number)
+        if len(line) > _FIRST_LINE:
+            raise FileError(source.file, "a header of column names", line=number)
+        lines.append(line)
+    return lines
 
 
-def _columns(path: Path, file: str, header: _Header, wanted: tuple[str, ...], bounds: Bounds) -> dict[str, Array]:
+def _load(text: _Text, wanted: Sequence[str]) -> Columns:
+    """Arrow first on the file as it is, then on cleaned rows, then the slow pass that names the line."""
+    reasons = []
+    for cleaned in (False, True) if text.source.plain and text.dialect.plain else (True,):
+        try:
+            return _columns(text, tuple(wanted), cleaned)
+        except pa.ArrowInvalid as error:
+            reasons.append(str(error))
+    if "Empty CSV" in reasons[-1]:
+        raise FileError(text.file, "at least one row of samples after the header")
+    raise _diagnose(text, tuple(wanted), reasons[0])
+
+
+def _columns(text: _Text, wanted: tuple[str, ...], cleaned: bool) -> dict[str, Array | Integers]:
     """The wanted columns (n,), block by block, so that a file of too many rows is left at the first one too many."""
-    filling = Filling(wanted)
+    dialect = text.dialect
+    names = [*dialect.names, ""] if dialect.trailing else list(dialect.names)
+    where: Any = RowStream(text.source, dialect) if cleaned else text.source.path
+    doubles = tuple(name for name in wanted if name not in text.integers)
+    filling = Filling(doubles)
+    stamps: dict[str, list[Integers]] = {name: [] for name in wanted if name in text.integers}
+    kinds = {name: pa.int64() if name in text.integers else pa.float64() for name in wanted}
+    rows, done, progress, size = 0, 0, text.bounds.progress, text.source.path.stat().st_size
     with pacsv.open_csv(
-        path,
-        read_options=pacsv.ReadOptions(column_names=header.names, skip_rows=header.lines),
+        where,
+        read_options=pacsv.ReadOptions(
+            block_size=_BLOCK_BYTES, column_names=names, skip_rows=0 if cleaned else dialect.skip
+        ),
+        parse_options=pacsv.ParseOptions(delimiter="," if dialect.delimiter == WHITE else dialect.delimiter),
         convert_options=pacsv.ConvertOptions(
             include_columns=list(wanted),
-            column_types=dict.fromkeys(wanted, pa.float64()),
+            column_types=kinds,
             null_values=[],
             strings_can_be_null=False,
+            decimal_point=dialect.decimal,
         ),
     ) as blocks:
         for block in blocks:
-            check_rows(filling.rows + block.num_rows, bounds, file)
-            filling.add({name: block.column(name).to_numpy(zero_copy_only=False) for name in wanted})
-    return filling.columns()
+            rows += block.num_rows
+            check_rows(rows, text.bounds, text.file)
+            done = min(size, done + _BLOCK_BYTES)
+            if progress is not None:
+                progress(done, size)
+            part = {name: block.column(name).to_numpy(zero_copy_only=False) for name in wanted}
+            for name, pieces in stamps.items():
+                pieces.append(part.pop(name))
+            if doubles:
+                filling.add(part)
+    return {**filling.columns(), **{name: np.concatenate(pieces) for name, pieces in stamps.items()}}
 
 
-def _header(path: Path, file: str) -> _Header:
-    """The first line that is neither empty nor a # comment."""
-    with path.open("rb") as stream:
-        for number, raw in enumerate(iter(lambda: stream.readline(_HEADER_BYTES + 1), b""), start=1):
-            if b"\r" in raw.rstrip(b"\r\n"):
-                raise FileError(file, "lines that end in LF or CR LF, not in CR alone", line=number)
-            if len(raw) > _HEADER_BYTES:
-                raise FileError(file, "a header of comma-separated column names", line=number)
-            text = raw.decode("utf-8-sig" if number == 1 else "utf-8", errors="replace").strip()
-            if not text or text.startswith("#"):
-                continue
-            try:
-                names = [name.strip() for name in next(csv.reader([text]))]
-            except csv.Error as error:
-                raise FileError(file, f"a header of comma-separated column names ({error})", line=number) from None
-            if len(names) == 1 and (";" in text or "\t" in text):
-                raise FileError(file, "commas between the columns", line=number, value=text[:60])
-            if all(_is_number(name) for name in names):
-                raise FileError(file, "a header line that names the columns", line=number, value=text[:60])
-            return _Header(names, number)
-    raise FileError(file, "a header line and samples, the file is empty")
+def _rows(text: _Text) -> Iterator[tuple[int, list[str]]]:
+    """(line, cells) of the rows Arrow counts: empty lines and remarks are none. Raises `FileError` where `csv` does."""
+    dialect, last = text.dialect, [0]
 
+    def lines() -> Iterator[str]:
+        for number, line in enumerate(text.source.lines(), start=1):
+            if number > dialect.skip and line.strip() and not is_comment(line):
+                last[0] = number
+                yield without_invisible(line)
 
-def _rows(path: Path, file: str, header: _Header) -> Iterator[tuple[int, list[str]]]:
-    """(line, cells) of the rows Arrow counts: empty lines are none. Raises `FileError` where `csv` gives up."""
-    with path.open("r", encoding="utf-8", errors="replace", newline="") as stream:
-        lines = itertools.islice(stream, header.lines, None)
-        reader = csv.reader(lines)
-        try:
-            for cells in reader:
-                if cells:
-                    yield header.lines + reader.line_num, cells
-        except csv.Error as error:
-            expected = f"cells of at most {csv.field_size_limit()} characters ({error})"
-            raise FileError(file, expected, line=header.lines + reader.line_num) from None
-
-
-def _line_of(path: Path, file: str, header: _Header, row: int) -> int:
-    found = next(itertools.islice(_rows(path, file, header), row, None), None)
-    return header.lines + 1 + row if found is None else found[0]
-
-
-def _diagnose(path: Path, file: str, header: _Header, wanted: tuple[str, ...], reason: str) -> FileError:
-    places = [(name, header.names.index(name)) for name in wanted]
-    for line, cells in _rows(path, file, header):
-        if len(cells) != len(header.names):
-            expected = f"{len(header.names)} columns as in the header"
-            return FileError(file, expected, line=line, value=f"{len(cells)} columns")
-        for name, column in places:
-            if not _is_number(cells[column]):
-                return FileError(file, "a number", line=line, column=name, value=repr(cells[column][:40]))
-    # Arrow is stricter than Python somewhere: its own words, which carry the row, say where.
-    return FileError(file, f"CSV as RFC 4180 has it ({reason.splitlines()[0][:200]})")
-
-
-def _is_number(text: str) -> bool:
+    if dialect.delimiter == WHITE:
+        yield from ((last[0], line.split()) for line in lines())
+        return
+    reader = csv.reader(lines(), delimiter=dialect.delimiter)
     try:
-        float(text)
-    except ValueError:
-        return False
-    return "_" not in text
+        for cells in reader:
+            yield last[0], cells
+    except csv.Error as error:
+        expected = f"cells of at most {csv.field_size_limit()} characters ({error})"
+        raise FileError(text.file, expected, line=last[0]) from None
+
+
+def _line_of(text: _Text, row: int) -> int:
+    found = next(itertools.islice(_rows(text), row, None), None)
+    return text.dialect.skip + 1 + row if found is None else found[0]
+
+
+def _diagnose(text: _Text, wanted: tuple[str, ...], reason: str) -> FileError:
+    """The first row that is none: its line, its column, its value."""
+    dialect, width = text.dialect, len(text.dialect.names)
+    at = [(name, dialect.names.index(name)) for name in wanted]
+    for line, cells in _rows(text):
+        if len(cells) != width + dialect.trailing:
+            return FileError(text.file, f"{width} columns as in the header", line=line, value=f"{len(cells)} columns")
+        for name, column in at:
+            if not is_number(cells[column], dialect.decimal):
+                shown = visible(repr(cells[column][:40]))
+                return FileError(text.file, "a number", line=line, column=name, value=shown)
+    # Arrow is stricter than Python somewhere: its own words, which carry the row, say where.
+    return FileError(text.file, f"CSV as RFC 4180 has it ({reason.splitlines()[0][:200]})")

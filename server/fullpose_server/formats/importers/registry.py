@@ -7,12 +7,13 @@ is missing the message says which.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 
 import fullpose_server.formats.importers.log_signatures as logs
 from fullpose_server.errors import FileError
-from fullpose_server.formats.importers import signatures
+from fullpose_server.formats.importers import signatures, text_source
 from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds
 from fullpose_server.formats.importers.table import Table
 
@@ -25,6 +26,11 @@ class Head:
 
     data: bytes
     path: Path
+
+    @cached_property
+    def text(self) -> bytes:
+        """The first bytes, unpacked where they are packed by gzip."""
+        return text_source.unpacked_head(self.data, HEAD_BYTES)
 
     @property
     def suffix(self) -> str:
@@ -57,7 +63,10 @@ IMPORTERS: tuple[Importer, ...] = (
     Importer("excel", "Excel", lambda head: logs.is_workbook(head.data), "excel", "excel"),
     Importer("tlog", "MAVLink tlog", lambda head: logs.is_tlog(head.data), "tlog", "ardupilot"),
     # Further binary formats go here, before text.
-    Importer("csv", "CSV text", lambda head: signatures.is_text(head.data), "csv"),
+    Importer("aem", "CCSDS AEM", lambda head: b"CCSDS_AEM_VERS" in head.text[:4096], "aem"),
+    Importer("stk", "STK .a", lambda head: head.text.lstrip().lower().startswith(b"stk.v."), "stk"),
+    Importer("novatel", "NovAtel", lambda head: text_source.is_novatel(head.text), "novatel"),
+    Importer("csv", "CSV text", lambda head: text_source.encoding_of(head.text) is not None, "csv"),
 )
 
 
@@ -74,7 +83,8 @@ def importer_of(path: Path, file: str, suffix_of: str = "") -> Importer:
     for row in IMPORTERS:
         if row.recognise(head):
             return row
-    raise FileError(file, "CSV text or Parquet, this is another binary file")
+    known = ", ".join(row.about for row in IMPORTERS)
+    raise FileError(file, f"a flight ({known}), this is {signatures.name_of(data)}")
 
 
 def read_tables(

@@ -18,6 +18,7 @@ from fullpose_server.formats.caution import Caution
 
 # (n,) each. Doubles; a column of stamps that doubles would round (nanoseconds since 1970) may stay whole numbers.
 Columns = Mapping[str, Array | Integers]
+_EMPTY_BRACKETS = re.compile(r"\s*(?:\[\s*\]|\(\s*\))\s*$")
 _UNIT_IN_NAME = re.compile(
     r"^\s*(?P<name>.*?)\s*[\[(<{](?P<unit>[^\[\](){}<>]*[^\[\](){}<>0-9.,:;+\- ][^\[\](){}<>]*)[\])>}]\s*$"
 )
@@ -100,5 +101,6 @@ def unit_in_name(name: str) -> tuple[str, str | None]:
 
     `q[0]` has none: an index is no unit.
     """
+    name = _EMPTY_BRACKETS.sub("", name)
     found = _UNIT_IN_NAME.match(name)
     return (found["name"], found["unit"].strip()) if found else (name.strip(), None)

@@ -1,0 +1,42 @@
+"""How an upload is to be read, as the fields of its form say."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from fullpose_server.api.problems import ApiError
+from fullpose_server.formats.profile import shipped
+from fullpose_server.formats.trajectory import Convention
+
+_FLAGS = {
+    "strict": "Refuse a flight that there is a warning about",
+    "bridge_gaps": "Fly through gaps by interpolation; they are refused otherwise",
+    "drop_duplicates": "Of samples with one stamp, keep the first",
+}
+READING_FIELDS: dict[str, Any] = {
+    "convention": {
+        "type": "string",
+        "enum": [each.value for each in Convention],
+        "description": "The axes it is written in. Default: those of its profile",
+    },
+    "profile": {"type": "string", "description": "Which column is what, by a shipped name. Default: guessed"},
+    "columns": {"type": "string", "description": "A column map as JSON (`ColumnMap`), in the place of a profile"},
+    **{name: {"type": "boolean", "default": False, "description": about} for name, about in _FLAGS.items()},
+}
+
+
+def reading_options(fields: Mapping[str, str]) -> dict[str, Any]:
+    """The fields of `formats.read_options.ReadOptions`, for `json`. Raises `ApiError` 422."""
+    told = {name: text.strip() for name, text in fields.items()}
+    how: dict[str, Any] = {name: told[name] for name in ("convention", "profile", "columns") if told.get(name)}
+    _check("convention", how.get("convention"), [each.value for each in Convention])
+    _check("profile", how.get("profile"), list(shipped()))  # a name: no file of the server's
+    for name in _FLAGS:
+        if told.get(name):
+            _check(name, told[name], ["true", "false"])
+            how[name] = told[name] == "true"
+    return how
+
+
+def _check(name: str, value: str | None, known: list[str]) -> None:
+    if value is not None and value not in known:
+        raise ApiError(422, "validation", f"{name}: {value[:40]!r}: expected one of {', '.join(known)}")
