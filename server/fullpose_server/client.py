@@ -94,17 +94,10 @@ class Client:
         """All rigs."""
         return await self._array("GET", "/rigs")
 
-    async def upload(
-        self, file: Path, convention: str | None = None, name: str | None = None, **reading: str | bool
-    ) -> dict[str, Any]:
-        """Upload a flight; returns it as stored.
-
-        convention: the axes it is written in, by default those of its profile. reading: `profile`, `columns` (a column
-        map as JSON), `strict`, `bridge_gaps`, `drop_duplicates`.
-        """
-        given = {"convention": convention, "name": name, **reading}
+    async def upload(self, file: Path, convention: str = "", name: str = "", **how: str | bool) -> dict[str, Any]:
+        """Upload a flight; returns it as stored. how: other fields of the form, `profile` or `bridge_gaps`."""
         fields = {
-            key: str(value).lower() if isinstance(value, bool) else value for key, value in given.items() if value
+            k: "true" if v is True else v for k, v in {"convention": convention, "name": name, **how}.items() if v
         }
         content = await asyncio.to_thread(file.read_bytes)
         return await self._object("POST", "/trajectories", data=fields, files={"file": (file.name, content)})
