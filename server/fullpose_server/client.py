@@ -96,9 +96,7 @@ class Client:
 
     async def upload(self, file: Path, convention: str = "", name: str = "", **how: str | bool) -> dict[str, Any]:
         """Upload a flight; returns it as stored. how: other fields of the form, `profile` or `bridge_gaps`."""
-        fields = {
-            k: "true" if v is True else v for k, v in {"convention": convention, "name": name, **how}.items() if v
-        }
+        fields = {key: value for key, value in {"convention": convention, "name": name, **how}.items() if value}
         content = await asyncio.to_thread(file.read_bytes)
         return await self._object("POST", "/trajectories", data=fields, files={"file": (file.name, content)})
 
