@@ -13,7 +13,7 @@ from enum import StrEnum
 import numpy as np
 from scipy.spatial.transform import Rotation, RotationSpline
 
-from fullpose._typing import Array
+from fullpose._typing import Array, Integers
 from fullpose.errors import InputError
 from fullpose.flight import bad_time
 
@@ -134,3 +134,21 @@ def _check(time: Array, q: Array, rate_hz: float) -> None:
     if not good.all():
         bad = int(np.argmin(good))
         raise InputError("q", bad, q[bad].tolist(), "a finite quaternion that is not zero")
+
+
+def subdivide(time: Array, attitude: Array, longest: float, most_parts: int) -> tuple[Array, Array, Integers]:
+    """The flight with samples between those that are farther apart than `longest` [s], read off the spline.
+
+    time (n,) [s], attitude (n, 3, 3) body from reference. Returns both at (m,) times, and which of these (n,) the
+    given samples are; they are kept to the last bit. A step is divided into `most_parts` at most.
+    """
+    parts = np.clip(np.ceil(np.diff(time) / longest), 1, most_parts).astype(np.int64)
+    rows = np.concatenate([[0], np.cumsum(parts)])
+    if rows[-1] == time.size - 1:
+        return time, attitude, rows
+    at = np.interp(np.arange(rows[-1] + 1), rows, time)
+    body_to_reference = Rotation.from_matrix(np.swapaxes(attitude, 1, 2))
+    between = RotationSpline(time, body_to_reference)(at)
+    C = np.ascontiguousarray(np.swapaxes(between.as_matrix(), 1, 2))
+    C[rows] = attitude
+    return at, C, rows

@@ -6,17 +6,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fullpose._typing import Array, Clock, Codes, Counts, Progress
+from fullpose._typing import Array, Clock, Codes, Counts, Integers, Progress
 from fullpose.bounds import limited_name
 from fullpose.flight import check_flight, check_start
 from fullpose.methods.base import Stepper
 from fullpose.registry import DEFAULT, Planner, find_method
+from fullpose.resample import subdivide
 from fullpose.rig import Rig
 from fullpose.solution import Blocking, Solution
 from fullpose.verify import attitude_errors, payload_attitudes
 
 if TYPE_CHECKING:
     from fullpose.plan import Plan
+
+# A step method's rules hold over short steps: what its null-space gains ask for in five seconds is a turn of a frame.
+SPARSE_S = 1.0  # a flight with a longer step is solved at samples between, too
+FINE_S = 0.1
+MOST_PARTS = 200  # of one step
+MOST_SPARSE = 20_000  # samples; a spline through more of them takes much memory, and they are no sparse flight
 
 BLOCK = 16  # samples between two readings of the clock and two reports of progress
 
@@ -70,7 +77,12 @@ def solve_flight(
         made = row.plans(t, C, rig, near, own, progress, clock)
         return Solved(made.solution, made)
     begin = clock() if clock else np.nan
-    flown = _sampled(row.begins(rig, own, near, t, C), t, C, clock, progress)
+    at, between, rows = t, C, None
+    if 1 < t.size <= MOST_SPARSE and float(np.diff(t).max()) > SPARSE_S:
+        at, between, rows = subdivide(t, C, FINE_S, MOST_PARTS)
+    flown = _sampled(row.begins(rig, own, near, at, between), at, between, clock, progress)
+    if rows is not None:
+        flown = _at(flown, rows)
     solve_time = clock() - begin if clock else np.nan
     return Solved(_solution(method, rig, t, C, flown, solve_time))
 
@@ -100,6 +112,17 @@ def _sampled(
         if progress:
             progress(block.stop, n)
     return out
+
+
+def _at(flown: _Samples, rows: Integers) -> _Samples:
+    """What was done at some of the samples; what it took is that of those on the way to each, too."""
+    begins = np.concatenate([[0], rows[:-1] + 1])
+    return _Samples(
+        flown.angles[rows],
+        np.maximum.reduceat(flown.limited, begins),
+        np.add.reduceat(flown.iterations, begins),
+        np.add.reduceat(flown.step_time, begins),
+    )
 
 
 def _solution(method: str, rig: Rig, time: Array, attitude: Array, flown: _Samples, solve_time: float) -> Solution:

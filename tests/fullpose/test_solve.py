@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from fullpose.attitude import dcm_from_euler
 from fullpose.errors import CancelledError, InputError, MethodError
@@ -111,3 +112,15 @@ def test_the_default_is_the_command_lines() -> None:
     assert solve(TIME, C, RIG).method == "plan"
     assert solve_flight(TIME, C, RIG).plan is not None
     assert solve_flight(TIME, C, RIG, "exact").plan is None
+
+
+@pytest.mark.parametrize("method", ["exact", "dwln", "gradient_projection", "alm", "fixed_joint"])
+def test_a_slow_flight_of_sparse_samples_is_flown_by_every_method(method: str) -> None:
+    time = 5.0 * np.arange(20)
+    angles = np.column_stack([40 + 0.3 * time, 10 * np.sin(0.03 * time), 20 * np.sin(0.03 * time)])
+    attitude = Rotation.from_euler("YZX", angles, degrees=True).as_matrix().swapaxes(1, 2)
+    solution = solve(time, attitude, builtin_rigs()["vertical-4"], method=method)
+    assert solution.time.tolist() == time.tolist()
+    assert np.degrees(solution.error.max()) < 1e-3
+    assert not solution.limited_samples
+    assert np.degrees(np.abs(np.diff(solution.angles, axis=0)).max() / 5.0) < 10.0
