@@ -22,6 +22,9 @@ export type ExportFormat = ExportKind["format"];
 export type Diagnosis = Schemas["DiagnosisOut"];
 /** A flight's file as a form. */
 export type FlightForm = paths["/api/v1/trajectories"]["post"]["requestBody"]["content"]["multipart/form-data"];
+/** How a file is to be read; what is left out is guessed. */
+export type HowToRead = Omit<FlightForm, "file" | "name">;
+export type ReadingPreview = Schemas["ReadingPreview"];
 /** One frame's limits in degrees; null for no limit. */
 export type FrameLimits = Omit<Schemas["FrameOut"], "weight">;
 export type FrameName = keyof Schemas["FramesOut"];

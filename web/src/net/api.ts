@@ -16,7 +16,7 @@ import type {
   UserWanted,
 } from "../contract/types";
 import { page, pathTo, request, socketTo } from "./request";
-import { upload } from "./upload";
+import { lookAt, upload } from "./upload";
 
 /** How long an answer may take: to a Stop, to a command or the lease, and to what is read or begun. */
 const STOP = { withinMs: 2000 };
@@ -59,6 +59,7 @@ export const api = {
     request("patch", "/api/v1/trajectories/{sha256}", { sha256 }, { ...READ, body }),
   deleteTrajectory: (sha256: string) => request("delete", "/api/v1/trajectories/{sha256}", { sha256 }, READ),
   upload,
+  lookAt,
 
   plans: (before: string | null = null, wanted: Searched = {}) =>
     page("/api/v1/plans", {}, wanted, before, READ.withinMs),

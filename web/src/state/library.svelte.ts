@@ -1,8 +1,8 @@
 /** What the server keeps: rigs, trajectories, methods, runs, and the jobs: plans and comparisons. */
 import type {
   Comparison,
-  Convention,
   Health,
+  HowToRead,
   LabelsIn,
   Method,
   Plan,
@@ -157,14 +157,10 @@ export class Library {
     return run;
   }
 
-  async upload(file: File, convention: Convention): Promise<Trajectory> {
+  async upload(file: File, how: HowToRead): Promise<Trajectory> {
     this.uploading = { name: file.name, fraction: 0 };
     try {
-      const stored = await this.api.upload(
-        file,
-        convention,
-        (fraction) => (this.uploading = { name: file.name, fraction }),
-      );
+      const stored = await this.api.upload(file, how, (fraction) => (this.uploading = { name: file.name, fraction }));
       await Promise.all([this.flights.refresh(), this.searches.flights.refresh()]);
       this.trajectory = stored.sha256;
       this.plan = null;

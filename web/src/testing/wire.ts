@@ -91,6 +91,7 @@ export const FLIGHT: Trajectory = {
   sha256: "f",
   name: "loop",
   convention: "nue",
+  input: null,
   created_at: "2026-11-01T12:00:00Z",
   duration_s: 10,
   samples: 1001,

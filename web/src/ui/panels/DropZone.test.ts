@@ -14,8 +14,8 @@ describe("a flight", () => {
     const console = new TestConsole({ trajectories: { rows: [FLIGHT], next: null } });
     console.show(DropZone, {});
     await choose(file);
-    const [what, sent, convention, progress] = console.asked.at(-1) ?? [];
-    expect([what, sent, convention]).toEqual(["upload", file, "nue"]);
+    const [what, sent, how, progress] = console.asked.at(-1) ?? [];
+    expect([what, sent, how]).toEqual(["upload", file, {}]);
     (progress as (fraction: number) => void)(0.5);
     expect((await screen.findByText(/50/)).textContent).toContain("50");
   });
