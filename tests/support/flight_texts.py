@@ -177,7 +177,7 @@ FILES: dict[str, tuple[str | bytes, str, str | None]] = {
     "ROS (rostopic echo -p)": (
         "%time,field.header.seq,field.header.stamp,field.orientation.x,field.orientation.y,field.orientation.z,"
         "field.orientation.w\n" + rows_of(NANOSECONDS, ZERO, NANOSECONDS, X, Y, Z, W),
-        "rosbag",
+        "ros",
         None,
     ),
     "ROS (PlotJuggler)": (

@@ -37,8 +37,10 @@ def choose(tables: tuple[Table, ...], options: ReadOptions = AS_IT_IS) -> Choice
     for table in tables:
         _check_one_attitude(table)
         for each in _candidates(table):
-            if (columns := each.bind(table, convention)) is None or not _allowed(each, convention):
+            if (columns := each.bind(table, convention)) is None:
                 continue
+            if not _allowed(each, convention):
+                raise _other_axes(table, each, convention)
             _check_once(table, columns)
             said = convention is not None or each.axes_named
             assumed = None if said or each.name in OWN else _assumed(each)

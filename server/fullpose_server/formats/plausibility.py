@@ -19,6 +19,7 @@ ABSURD_DEG = 1e6  # no column of angles counts so many turns
 HUGE = 1e12  # what is beyond is a code for "no value"
 FASTEST_DEG_S = 3600.0  # of a body: ten turns a second
 SLOW_STEP_S = 0.25  # a median step from here on is looked at
+SLOW_RATE_DEG_S = 1.0  # ... where nothing turns faster, up to a second
 QUICK_STEP_S = 2e-5  # ... and up to here
 NEAR = 0.1  # of the median step
 LONGEST_STEP_DEG = 90.0  # between samples: beyond it, which way round is a guess
@@ -142,7 +143,7 @@ def time_cautions(time: Array, turn_deg: Array, how: TimeMap) -> Iterator[Cautio
         return
     step = float(np.median(np.diff(time)))
     rate = float(np.max(turn_deg / np.maximum(np.diff(time), NEAR * step)))
-    if step >= SLOW_STEP_S:
+    if step >= 1.0 or (step >= SLOW_STEP_S and rate < SLOW_RATE_DEG_S):
         smaller = "milliseconds" if step < 1000.0 else "microseconds"
         slow = f"the median step is {step:.6g} s and the body turns at most {rate:.3g} deg/s"
         text = f"{slow}: is {how.column} in {how.unit}, not in {smaller}?"
