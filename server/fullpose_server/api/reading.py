@@ -20,6 +20,10 @@ READING_FIELDS: dict[str, Any] = {
     },
     "profile": {"type": "string", "description": "Which column is what, by a shipped name. Default: guessed"},
     "columns": {"type": "string", "description": "A column map as JSON (`ColumnMap`), in the place of a profile"},
+    "source": {
+        "type": "string",
+        "description": "Of a file with several attitudes: the topic, message, group or sheet. Default: the only one",
+    },
     **{name: {"type": "boolean", "default": False, "description": about} for name, about in _FLAGS.items()},
 }
 
@@ -27,7 +31,9 @@ READING_FIELDS: dict[str, Any] = {
 def reading_options(fields: Mapping[str, str]) -> dict[str, Any]:
     """The fields of `formats.read_options.ReadOptions`, for `json`. Raises `ApiError` 422."""
     told = {name: text.strip() for name, text in fields.items()}
-    how: dict[str, Any] = {name: told[name] for name in ("convention", "profile", "columns") if told.get(name)}
+    how: dict[str, Any] = {
+        name: told[name] for name in ("convention", "profile", "columns", "source") if told.get(name)
+    }
     _check("convention", how.get("convention"), [each.value for each in Convention])
     _check("profile", how.get("profile"), list(shipped()))  # a name: no file of the server's
     for name in _FLAGS:

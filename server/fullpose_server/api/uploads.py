@@ -22,6 +22,7 @@ FIELDS = (
     "convention",
     "profile",
     "columns",
+    "source",
     "strict",
     "bridge_gaps",
     "drop_duplicates",

@@ -45,6 +45,10 @@ class ReadingArguments:
     profile: Annotated[
         str | None, typer.Option(help="Which column is what: a named profile or a TOML file; without it, guessed.")
     ] = None
+    source: Annotated[
+        str | None,
+        typer.Option(help="Of a file with several attitudes: the topic, message, group or sheet; they are listed."),
+    ] = None
     strict: Annotated[bool, typer.Option("--strict", help="Refuse a flight that there is a warning about.")] = False
     bridge_gaps: Annotated[
         bool, typer.Option("--bridge-gaps", help="Fly through gaps by interpolation; refused without it.")

@@ -52,6 +52,7 @@ def read_options(asked: ReadingArguments) -> "ReadOptions":
     return ReadOptions(
         convention=None if asked.convention is None else read_convention(asked.convention),
         profile=asked.profile,
+        source=asked.source,
         strict=asked.strict,
         bridge_gaps=asked.bridge_gaps,
         drop_duplicates=asked.drop_duplicates,

@@ -9,6 +9,7 @@ from fullpose_server.formats.column_map import ColumnMap
 from fullpose_server.formats.importers.table import Table
 from fullpose_server.formats.profile import Profile, find, find_profile, shipped
 from fullpose_server.formats.read_options import AS_IT_IS, ReadOptions
+from fullpose_server.formats.sources import check_one, of_source
 from fullpose_server.formats.trajectory import Convention
 from fullpose_server.formats.visible import visible
 
@@ -30,22 +31,31 @@ OWN = ("fullpose", "fullpose-ned", "fullpose-quaternion")
 def choose(tables: tuple[Table, ...], options: ReadOptions = AS_IT_IS) -> Choice:
     """The table and map of a file. Raises `FileError` where nothing fits."""
     convention = options.convention
+    tables = of_source(tables, options.source)
     if options.columns is not None:
         return _as_told(tables, options.columns)
     if options.profile is not None:
         return _given(tables, convention, find_profile(options.profile))
-    for table in tables:
-        _check_one_attitude(table)
-        for each in _candidates(table):
-            if (columns := each.bind(table, convention)) is None:
-                continue
-            if not _allowed(each, convention):
-                raise _other_axes(table, each, convention)
-            _check_once(table, columns)
-            said = convention is not None or each.axes_named
-            assumed = None if said or each.name in OWN else _assumed(each)
-            return Choice(table, columns, each.name, _reason(table, each, said), assumed)
-    raise _nothing_fits(tables[0], convention)
+    fitting = [choice for table in tables if (choice := _guessed(table, convention)) is not None]
+    check_one([choice.table for choice in fitting])
+    if not fitting:
+        raise _nothing_fits(tables[0], convention)
+    return fitting[0]
+
+
+def _guessed(table: Table, convention: Convention | None) -> Choice | None:
+    """The first profile that fits a table; None where none does."""
+    _check_one_attitude(table)
+    for each in _candidates(table):
+        if (columns := each.bind(table, convention)) is None:
+            continue
+        if not _allowed(each, convention):
+            raise _other_axes(table, each, convention)
+        _check_once(table, columns)
+        said = convention is not None or each.axes_named
+        assumed = None if said or each.name in OWN else _assumed(each)
+        return Choice(table, columns, each.name, _reason(table, each, said), assumed)
+    return None
 
 
 def _as_told(tables: tuple[Table, ...], text: str) -> Choice:
@@ -56,10 +66,11 @@ def _as_told(tables: tuple[Table, ...], text: str) -> Choice:
         first = error.errors(include_url=False)[0]
         key = ".".join(str(part) for part in first["loc"])
         raise FileError("columns", first["msg"], column=key or None, column_word="key") from None
-    for table in tables:
-        if all(name in table.names for name in columns.columns):
-            _check_once(table, columns)
-            return Choice(table, columns, "", "as told")
+    fitting = [table for table in tables if all(name in table.names for name in columns.columns)]
+    check_one(fitting)
+    for table in fitting:
+        _check_once(table, columns)
+        return Choice(table, columns, "", "as told")
     missing = next(name for name in columns.columns if name not in tables[0].names)
     raise tables[0].error(f"a column {missing} among {listing(tables[0].names)}", missing)
 
@@ -69,9 +80,10 @@ def _assumed(profile: Profile) -> str:
 
 
 def _given(tables: tuple[Table, ...], convention: Convention | None, profile: Profile) -> Choice:
-    for table in tables:
-        if profile.table is not None and len(tables) > 1 and table.name not in profile.table:
-            continue
+    named = [table for table in tables if profile.table is None or len(tables) == 1 or table.name in profile.table]
+    fitting = [table for table in named if profile.bind(table, convention) is not None]
+    check_one(fitting)
+    for table in fitting:
         if (columns := profile.bind(table, convention)) is not None:
             if not _allowed(profile, convention):
                 raise _other_axes(table, profile, convention)

@@ -9033,6 +9033,8 @@ export interface operations {
                     name?: string;
                     /** @description Which column is what, by a shipped name. Default: guessed */
                     profile?: string;
+                    /** @description Of a file with several attitudes: the topic, message, group or sheet. Default: the only one */
+                    source?: string;
                     /**
                      * @description Refuse a flight that there is a warning about
                      * @default false
@@ -9749,6 +9751,8 @@ export interface operations {
                     file: string;
                     /** @description Which column is what, by a shipped name. Default: guessed */
                     profile?: string;
+                    /** @description Of a file with several attitudes: the topic, message, group or sheet. Default: the only one */
+                    source?: string;
                     /**
                      * @description Refuse a flight that there is a warning about
                      * @default false

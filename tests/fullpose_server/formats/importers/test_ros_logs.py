@@ -4,8 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from fullpose.rig import builtin_rigs
+from fullpose_server.errors import FileError
 from fullpose_server.formats.importers.columns import Bounds, TooLargeError
+from fullpose_server.formats.read_options import ReadOptions
 from fullpose_server.formats.trajectory_file import read_trajectory
 from fullpose_server.runtime.contract.telemetry import SAMPLE
 from fullpose_server.runtime.recording.mcap_writer import RunRecord
@@ -35,6 +39,16 @@ def test_a_bag(tmp_path: Path, store: str, kind: str) -> None:
     assert attitude_error_deg(flight, logs.ENU, "enu") < 1e-9
     np.testing.assert_allclose(flight.time, (logs.TIME_US - logs.TIME_US[0]) * 1e-6, atol=1e-9)
     assert ("log-time" in [each.code for each in flight.warnings]) == (kind == "geometry_msgs/msg/Pose")
+
+
+@pytest.mark.parametrize("store", ["ros1", "sqlite", "mcap"])
+def test_a_bag_of_several_topics_is_for_a_person_to_choose(tmp_path: Path, store: str) -> None:
+    path = bag(tmp_path, store, TWO)
+    with pytest.raises(FileError, match=r"2 attitudes: expected one .*--source: /imu/data, /odom$"):
+        read_trajectory(path)
+    flight = read_trajectory(path, options=ReadOptions(source="/odom"))
+    assert flight.taken.table == "/odom"
+    assert attitude_error_deg(flight, logs.ENU, "enu") < 1e-9
 
 
 @pytest.mark.parametrize("store", ["ros1", "sqlite", "mcap"])
@@ -75,6 +89,22 @@ def run(path: Path, rig: str) -> np.ndarray:
     record.cut()
     record.finish()
     return rows
+
+
+def test_a_run_s_attitude_is_that_of_its_frames(tmp_path: Path) -> None:
+    rows = run(tmp_path / "run.mcap", "vertical-4")
+    with pytest.raises(FileError, match=r"--source: target, commanded, measured$"):
+        read_trajectory(tmp_path / "run.mcap")
+    letters = ["xyz"[axis] for axis in builtin_rigs()["vertical-4"].geometry.axes]
+    for source, field in (("commanded", "demand"), ("measured", "measured")):
+        flight = read_trajectory(tmp_path / "run.mcap", options=ReadOptions(source=source))
+        truth = Rotation.identity(300)
+        for k, axis in enumerate(letters):  # body to reference: from the base inwards
+            truth = truth * Rotation.from_euler(axis, rows[field][:, k, None], degrees=True)
+        assert attitude_error_deg(flight, truth, "nue") < 1e-9
+    target = read_trajectory(tmp_path / "run.mcap", options=ReadOptions(source="target"))
+    assert target.time[0] == pytest.approx(0.05)
+    assert target.time.size == 250
 
 
 def test_a_run_of_a_rig_that_is_not_known_has_its_target_alone(tmp_path: Path) -> None:

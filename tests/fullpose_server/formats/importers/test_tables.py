@@ -11,8 +11,9 @@ from nptdms import ChannelObject, TdmsWriter
 
 from fullpose_server.errors import FileError
 from fullpose_server.formats.importers.columns import Bounds, TooLargeError
+from fullpose_server.formats.read_options import ReadOptions
 from fullpose_server.formats.trajectory import Convention
-from fullpose_server.formats.trajectory_file import ReadOptions, read_trajectory
+from fullpose_server.formats.trajectory_file import read_trajectory
 from tests.support import logs, tables
 from tests.support.attitudes import attitude_error_deg
 from tests.support.reading import flight_or_error
@@ -37,6 +38,17 @@ def test_a_table_of_columns(tmp_path: Path, kind: str, columns: dict[str, np.nda
     assert flight.taken.table == "flight"
     assert attitude_error_deg(flight, logs.NED, "ned") < 1e-9
     np.testing.assert_allclose(flight.time, tables.TIME_S, rtol=4e-16)  # a workbook has 16 digits
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+def test_two_attitudes_are_for_a_person_to_choose(tmp_path: Path, kind: str) -> None:
+    groups = {"first": tables.COLUMNS, "second": tables.QUATERNION}
+    path = WRITERS[kind](tmp_path / "file", groups)
+    with pytest.raises(FileError, match=r"2 attitudes: expected one .*--source: first, second$"):
+        read_trajectory(path, options=NED)
+    flight = read_trajectory(path, options=ReadOptions(convention=Convention.NED, source="second"))
+    assert flight.taken.table == "second"
+    assert attitude_error_deg(flight, logs.NED, "ned") < 1e-9
 
 
 @pytest.mark.parametrize("kind", ["matlab", "hdf5", "matlab 7.3"])

@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fullpose_server.errors import FileError
 from fullpose_server.formats.importers.columns import Bounds, TooLargeError
+from fullpose_server.formats.read_options import ReadOptions
 from fullpose_server.formats.trajectory_file import read_trajectory
 from tests.support import logs
 from tests.support.attitudes import attitude_error_deg
@@ -19,6 +21,23 @@ def test_px4_ulog(tmp_path: Path) -> None:
     assert (flight.taken.format, flight.taken.profile, flight.taken.table) == ("ulog", "px4", "vehicle_attitude")
     assert attitude_error_deg(flight, logs.NED, "ned") < FLOAT32_DEG
     np.testing.assert_allclose(flight.time, (logs.TIME_US - logs.TIME_US[0]) * 1e-6, atol=1e-12)
+
+
+def test_px4_ulog_takes_the_estimate_and_others_by_request(tmp_path: Path) -> None:
+    path = logs.ulog(tmp_path / "log", ("vehicle_attitude_groundtruth", "vehicle_attitude"))
+    assert read_trajectory(path).taken.table == "vehicle_attitude"
+    asked = read_trajectory(path, options=ReadOptions(source="vehicle_attitude_groundtruth"))
+    assert asked.taken.table == "vehicle_attitude_groundtruth"
+    assert attitude_error_deg(asked, logs.NED, "ned") < FLOAT32_DEG
+    with pytest.raises(FileError, match="a source among vehicle_attitude, vehicle_attitude_groundtruth"):
+        read_trajectory(path, options=ReadOptions(source="vehicle_atitude"))
+
+
+def test_px4_ulog_of_two_estimators_is_for_a_person_to_choose(tmp_path: Path) -> None:
+    path = logs.ulog(tmp_path / "log", ("vehicle_attitude", "vehicle_attitude"))
+    with pytest.raises(FileError, match=r"--source: vehicle_attitude, vehicle_attitude/1$"):
+        read_trajectory(path)
+    assert read_trajectory(path, options=ReadOptions(source="vehicle_attitude/1")).time.size == logs.SAMPLES
 
 
 @pytest.mark.parametrize(("letters", "resolution_deg"), [("Qfff", FLOAT32_DEG), ("QccC", 0.01)])
@@ -37,6 +56,14 @@ def test_mavlink_tlog(tmp_path: Path, quaternion: bool, v1: bool) -> None:
     assert (flight.taken.format, flight.taken.table) == ("tlog", f"1.1/{name}")
     assert attitude_error_deg(flight, logs.NED, "ned") < FLOAT32_DEG
     np.testing.assert_allclose(flight.time, (logs.TIME_US - logs.TIME_US[0]) * 1e-6, atol=1e-12)
+
+
+def test_mavlink_tlog_of_two_vehicles_is_for_a_person_to_choose(tmp_path: Path) -> None:
+    path = logs.tlog(tmp_path / "log", ((1, 1), (2, 1)))
+    with pytest.raises(FileError, match=r"2 attitudes: expected one .*--source: 1\.1/ATTITUDE, 2\.1/ATTITUDE$"):
+        read_trajectory(path)
+    flight = read_trajectory(path, options=ReadOptions(source="2.1/ATTITUDE"))
+    assert attitude_error_deg(flight, logs.NED, "ned") < FLOAT32_DEG
 
 
 def test_mavlink_tlog_with_damage_is_read_around_it_and_says_so(tmp_path: Path) -> None:
