@@ -13,7 +13,12 @@ POSITION, RATE, ACCELERATION = (LIMITS.index(limit) for limit in Limit)
 EXACT = 0  # the code of a sample that no limit kept from the attitude
 CODES_PER_FRAME = len(LIMITS)
 LOWER, UPPER = range(2)  # sides
-MET = 1e-7  # of a limit: over it by less counts as inside
+MET = 1e-7  # of a limit: over it by less counts as inside, in the planner
+
+# What the check of a path and the guard of a rig let pass: rounding, and the touch of a path that stands on the end of
+# a range, which an iteration meets to the square root of its own precision.
+POSITION_TOLERANCE = 1e-8  # [rad] 0.002 arc seconds
+TOLERANCE = 1e-6  # of a rate or acceleration limit
 
 
 class Bound(NamedTuple):

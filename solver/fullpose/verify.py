@@ -4,18 +4,15 @@ Rates and accelerations are the samples' differences: v_k = (x_k - x_{k-1}) / (t
 a_k = (v_{k+1} - v_k) / ((t_{k+1} - t_{k-1}) / 2).
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fullpose._typing import Array
+from fullpose.bounds import POSITION_TOLERANCE, TOLERANCE
 from fullpose.errors import InputError
 from fullpose.rig import FRAMES, LIMITS, Frame, Limit, Rig
-
-POSITION_TOLERANCE = math.radians(1e-9)
-TOLERANCE = 1e-6  # of a rate or acceleration limit
 
 
 @dataclass(frozen=True)

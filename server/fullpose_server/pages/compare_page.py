@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 
 from fullpose._typing import Array
 from fullpose.attitude import euler_from_dcm
+from fullpose.bounds import POSITION_TOLERANCE, TOLERANCE
 from fullpose.compare import Row
 from fullpose.rig import FRAMES, Rig
 from fullpose.solution import Solution
-from fullpose.verify import POSITION_TOLERANCE, TOLERANCE, differences
+from fullpose.verify import differences
 from fullpose_server.formats.degrees import written_degrees
 from fullpose_server.pages.compare_table import metrics_table
 from fullpose_server.pages.thin import thin

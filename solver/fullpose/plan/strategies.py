@@ -11,10 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fullpose._typing import Array, Progress
-from fullpose.bounds import MET
+from fullpose.bounds import MET, POSITION
 from fullpose.plan.beam_path import BREADTHS
 from fullpose.plan.fallback import EXACT_ERROR, Fallback
 from fullpose.plan.node_paths import Query, cheapest, searched
+from fullpose.plan.plane_path import PlaneBreadth, plane_path, slow_frames
 from fullpose.trajectory.constraints import largest_violation, rig_limits
 from fullpose.trajectory.nodes import OVERLAP
 from fullpose.trajectory.problem import Problem
@@ -26,6 +27,7 @@ from fullpose.verify import attitude_errors, payload_attitudes
 AVOID_RADIUS = math.radians(30.0)
 AVOID_COST = 5.0  # [1/s], beside rates squared as shares of their limits
 AVOID_TIME = 0.4  # [s] before and after
+STANDING = 0.05  # beyond a range by less than this, in its unit, a path may be standing on its end
 WIDE_SECONDS = 600.0  # of a flight that is searched widely: up to a tenth of its length each time
 
 
@@ -101,14 +103,28 @@ def along(find: Find) -> Step:
         node_path, state = find(task, state)
         if not node_path.found:
             return state
-        path = refined(task, smooth_curve(task.problem, state.query.samples, node_path))
-        violation = how_far(task.problem, path)
-        state = replace(state, node_paths=state.node_paths + 1)
-        if violation < state.violation:
-            state = replace(state, best=path, violation=violation)
-        if violation <= MET:
-            return replace(state, flown=path)
-        return replace(state, avoid=(*state.avoid, *_around(task.problem, path)))
+        return judged(task, state, refined(task, smooth_curve(task.problem, state.query.samples, node_path)))
+
+    return step
+
+
+def judged(task: Task, state: State, path: Path) -> State:
+    """The state with one more refined path: the end of the search, or places that failed, to be avoided."""
+    violation = how_far(task.problem, path)
+    state = replace(state, node_paths=state.node_paths + 1)
+    if violation < state.violation:
+        state = replace(state, best=path, violation=violation)
+    if violation <= MET:
+        return replace(state, flown=path)
+    return replace(state, avoid=(*state.avoid, *_around(task.problem, path)))
+
+
+def in_the_plane(breadth: PlaneBreadth) -> Step:
+    """Refine the path that the search in the plane of time and base angle finds."""
+
+    def step(task: Task, state: State) -> State:
+        angles = plane_path(task.problem, breadth, task.told(0.0, 0.5))
+        return state if angles is None else judged(task, state, refined(task, angles))
 
     return step
 
@@ -193,6 +209,11 @@ def free_and_brief(task: Task, state: State) -> bool:
     return free(task, state) and bool(time[-1] - time[0] <= WIDE_SECONDS)
 
 
+def slow(task: Task, state: State) -> bool:
+    """Where a frame other than the base is slow, too."""
+    return free_and_brief(task, state) and bool(slow_frames(task.problem.rig))
+
+
 def coarse(task: Task, state: State) -> bool:
     """Where the grid is not the fine one yet."""
     return state.query.grid > task.problem.options.fine_grid
@@ -222,7 +243,11 @@ ATTEMPTS = (
     Attempt(0, "cheapest node path", always, along(kept)),
     Attempt(1, "straight through the singularity", always, along(straight)),
     Attempt(2, "beside the step method", always, beside(lambda fallback: (fallback.exact,))),
+    Attempt(2, "plane of time and base angle", free_and_brief, in_the_plane(PlaneBreadth(1000, 1.0, 1.0))),
     Attempt(2, "beam search", free, along(searching(0))),
+    Attempt(2, "plane, slow frames lead", slow, in_the_plane(PlaneBreadth(4000, 2.0, 2.0, slow_lead=True))),
+    Attempt(2, "plane, slow frames lead, finer", slow, in_the_plane(PlaneBreadth(4000, 1.0, 1.0, slow_lead=True))),
+    Attempt(2, "plane, finer", free_and_brief, in_the_plane(PlaneBreadth(4000, 0.6, 0.5))),
     Attempt(3, "wider beam search", free_and_brief, along(searching(1))),
     Attempt(4, "wider beam search, accelerations dearer", free_and_brief, along(searching(2))),
     Attempt(5, "away from the places that failed", always, along(away)),
@@ -256,8 +281,17 @@ def search(task: Task, state: State) -> State:
 
 
 def refined(task: Task, angles: Array) -> Path:
-    """The path next to exact angles (n, 4) [rad], which are overwritten."""
-    return refine_path(task.problem, angles, task.told(0.5, 0.5))
+    """The path next to exact angles (n, 4) [rad], which are overwritten.
+
+    A flight may have to stand on the end of a range, where a reserve leaves nothing: then it is refined without.
+    """
+    problem = task.problem
+    path = refine_path(problem, angles, task.told(0.5, 0.5))
+    violation = largest_violation(problem.time, path.angles, rig_limits(problem.rig))
+    if violation.limit != POSITION or not MET < violation.share < STANDING:
+        return path
+    without = replace(problem, options=replace(problem.options, reserve=0.0, iterations=3 * problem.options.iterations))
+    return refine_path(without, path.angles, task.told(0.9, 0.1))
 
 
 def flown_beside(task: Task, angles: Array) -> Path | None:

@@ -47,7 +47,8 @@ def test_the_options_say_how_many_are_tried(alternatives: int) -> None:
 def test_the_step_method_is_asked_after_two_and_before_the_wide_searches() -> None:
     names = [row.name for row in attempts(OPTIONS.alternatives)]
     assert names.index("beside the step method") == 2
-    assert names.index("beam search") == 3
+    assert names.index("plane of time and base angle") == 3
+    assert names.index("beam search") == 4
 
 
 @pytest.fixture
@@ -63,6 +64,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[Query]:
 
     monkeypatch.setattr(strategies, "_cheapest", nothing)
     monkeypatch.setattr(strategies, "searched", lambda *_: NONE)
+    monkeypatch.setattr(strategies, "plane_path", lambda *_: None)
     monkeypatch.setattr(strategies, "flown_beside", lambda *_: None)
     return queries
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fullpose._jit import kernel
 from fullpose._typing import Array
+from fullpose.bounds import POSITION_TOLERANCE, TOLERANCE
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.runtime.contract.config import GuardConfig, Tolerance
 from fullpose_server.runtime.motion.braking import stopping_distance
@@ -25,8 +26,6 @@ CHECKS = ("", "finite", "step", "position", "rate", "acceleration", "braking")
 _UNITS = ("", "deg", "deg", "deg", "deg/s", "deg/s^2", "deg")
 # Rows of the limits.
 LOWER, UPPER, MAX_RATE, MAX_ACCELERATION, MAX_STEP = 0, 1, 2, 3, 4
-_POSITION_SLACK = 1e-9  # [rad]
-_RELATIVE_SLACK = 1e-6
 _ROUNDING = 16.0 * 2.22e-16  # of positions, as accelerations see it through two differences
 
 
@@ -50,20 +49,20 @@ def check_command(dt: float, limits: Array, x: Array, x1: Array, v1: Array, v: A
             return 1 + 8 * i + STEP
         low = limits[LOWER, i]
         high = limits[UPPER, i]
-        if x[i] < min(low - _POSITION_SLACK, x1[i]) or x[i] > max(high + _POSITION_SLACK, x1[i]):
+        if x[i] < min(low - POSITION_TOLERANCE, x1[i]) or x[i] > max(high + POSITION_TOLERANCE, x1[i]):
             found[0], found[1], found[2] = x[i], low if x[i] < low else high, 0.0
             return 1 + 8 * i + POSITION
         rate = limits[MAX_RATE, i]
-        if abs(v[i]) > rate * (1.0 + _RELATIVE_SLACK) + _ROUNDING * (1.0 + abs(x[i])) / dt:
+        if abs(v[i]) > rate * (1.0 + TOLERANCE) + _ROUNDING * (1.0 + abs(x[i])) / dt:
             found[0], found[1], found[2] = v[i], math.copysign(rate, v[i]), 0.0
             return 1 + 8 * i + RATE
         most = limits[MAX_ACCELERATION, i]
-        if abs(a[i]) > most * (1.0 + _RELATIVE_SLACK) + _ROUNDING * (1.0 + abs(x[i])) / (dt * dt):
+        if abs(a[i]) > most * (1.0 + TOLERANCE) + _ROUNDING * (1.0 + abs(x[i])) / (dt * dt):
             found[0], found[1], found[2] = a[i], math.copysign(most, a[i]), 0.0
             return 1 + 8 * i + ACCELERATION
         room = high - x[i] if v[i] > 0.0 else x[i] - low
         needed = 0.0 if math.isinf(most) else stopping_distance(v[i], most, dt)
-        if needed > max(0.0, room) + _POSITION_SLACK + _RELATIVE_SLACK * needed:
+        if needed > max(0.0, room) + POSITION_TOLERANCE + TOLERANCE * needed:
             found[0], found[1], found[2] = needed, room, 0.0
             return 1 + 8 * i + BRAKING
         if high > low and not math.isinf(high):
