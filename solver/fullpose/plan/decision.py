@@ -14,7 +14,8 @@ from fullpose.plan.impossible import beyond_all_frames
 from fullpose.plan.least_tolerance import BRIEF, LeastTolerance, least_tolerance
 from fullpose.plan.node_paths import cheapest
 from fullpose.plan.recorded_noise import recorded_noise
-from fullpose.plan.strategies import State, Task, first_look, refined, search
+from fullpose.plan.refinement import Task, refined
+from fullpose.plan.strategies import State, first_look, search
 from fullpose.plan.three_axis import three_axis_path
 from fullpose.rig import FRAMES, LIMITS, Limit
 from fullpose.solution import Blocking

@@ -16,7 +16,7 @@ from fullpose.plan.decision import Flown, fly, fly_three_axis
 from fullpose.plan.fallback import EXACT_ERROR, Fallback
 from fullpose.plan.impossible import beyond_all_frames
 from fullpose.plan.reason import reason_of
-from fullpose.plan.strategies import Task
+from fullpose.plan.refinement import Task
 from fullpose.plan.verdict import Margins, Verdict, check, margins, verdict_on, with_least_tolerance, with_reason
 from fullpose.rig import Rig
 from fullpose.solution import Solution

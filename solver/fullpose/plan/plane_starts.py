@@ -20,7 +20,7 @@ LED = (-1.0, -0.5, 0.0, 0.5, 1.0)  # rates that a frame that leads begins with, 
 LED_AHEAD = 0.01  # [s] over which those are taken
 NEEDLES = 4  # that it may run straight at
 HALF = 0.5 * TURN
-HALF_TURNS = range(-4, 5)  # half turns between two of them
+MULTIPLES = range(-4, 5)  # half turns between two of them
 
 
 def first_states(problem: Problem, found: Needles, acceleration: float, leading: list[int]) -> States:
@@ -78,8 +78,8 @@ def _lines(problem: Problem, found: Needles, rates: Array, fastest: float) -> li
     soon = list(_soon(problem, found))
     lines = [(base - rate * t + half, rate) for t, base in soon for rate in rates for half in (0.0, HALF)]
     for (t1, base1), (t2, base2) in itertools.pairwise(soon):
-        for half_turns in HALF_TURNS:
-            rate = (base2 + half_turns * HALF - base1) / (t2 - t1)
+        for multiple in MULTIPLES:
+            rate = (base2 + multiple * HALF - base1) / (t2 - t1)
             if abs(rate) <= fastest:
                 lines += [(base1 - rate * t1 + half, rate) for half in (0.0, HALF)]
     return lines

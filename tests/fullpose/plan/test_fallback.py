@@ -8,7 +8,7 @@ import pytest
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.plan import PlanOptions, plan
 from fullpose.plan.fallback import FORESIGHTS, Fallback
-from fullpose.plan.strategies import Task, flown_beside
+from fullpose.plan.refinement import Task, flown_beside
 from fullpose.rig import FrameLimits, Geometry, Rig, builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.solve import solve

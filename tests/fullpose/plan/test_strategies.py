@@ -10,7 +10,8 @@ from fullpose.attitude import dcm_from_quaternion
 from fullpose.plan import PlanOptions, strategies
 from fullpose.plan.fallback import Fallback
 from fullpose.plan.node_paths import NONE, Query
-from fullpose.plan.strategies import FARTHER, LAST, State, Task, attempts, first_look, how_far, search
+from fullpose.plan.refinement import Task, how_far
+from fullpose.plan.strategies import FARTHER, LAST, State, attempts, first_look, search
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.trajectory.constraints import LimitViolation
