@@ -18,17 +18,26 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Flight:
-    """time (n,) [s], q (n, 4) reference to body, the start pose (4,) [rad] or None where it is free, and warnings."""
+    """time (n,) [s], q (n, 4) reference to body, the start pose (4,) [rad] or None where it is free, and warnings.
+
+    A command says what was taken (`tell`) once nothing can be bad input any more: of that there is one line alone.
+    """
 
     time: "NDArray[Any]"
     q: "NDArray[Any]"
     start: "NDArray[Any] | None"
     warnings: tuple[Any, ...] = ()
     input: dict[str, Any] = field(default_factory=dict)  # what was taken of the file, for the report
+    statements: tuple[str, ...] = ()  # the same, a line each
+
+    def tell(self) -> None:
+        """Say what was taken of the file, and each warning."""
+        for statement in self.statements:
+            say(statement)
 
 
 def read_flight(path: Path, asked: ReadingArguments, rig: "Rig", start: str | None) -> Flight:
-    """The flight of a file, or of a scenario (TOML); what was taken of it and its warnings are said.
+    """The flight of a file, or of a scenario (TOML).
 
     start: the text of --start, which comes before the scenario's own. Raises `ServerError`, `InputError`.
     """
@@ -41,8 +50,8 @@ def read_flight(path: Path, asked: ReadingArguments, rig: "Rig", start: str | No
 
     with progress_bar("read") as progress:
         trajectory = read_trajectory(path, bounds=replace(UNBOUNDED, progress=progress), options=how)
-    tell(path, trajectory)
-    return Flight(trajectory.time, trajectory.q, pose, trajectory.warnings, input_report(path, trajectory))
+    taken = input_report(path, trajectory)
+    return Flight(trajectory.time, trajectory.q, pose, trajectory.warnings, taken, statements(path, trajectory))
 
 
 def read_options(asked: ReadingArguments) -> "ReadOptions":
@@ -59,12 +68,11 @@ def read_options(asked: ReadingArguments) -> "ReadOptions":
     )
 
 
-def tell(path: Path, trajectory: "Trajectory") -> None:
-    """Say what was taken of a file, and each warning."""
+def statements(path: Path, trajectory: "Trajectory") -> tuple[str, ...]:
+    """What was taken of a file, and each warning."""
     taken = trajectory.taken
-    say(f"{path}: read as {taken.format}{f', {taken.table}' if taken.table else ''}: {taken.statement}")
-    for caution in trajectory.warnings:
-        say(f"{path}: warning: {caution.message}")
+    head = f"{path}: read as {taken.format}{f', {taken.table}' if taken.table else ''}: {taken.statement}"
+    return (head, *(f"{path}: warning: {caution.message}" for caution in trajectory.warnings))
 
 
 def input_report(path: Path, trajectory: "Trajectory") -> dict[str, Any]:

@@ -68,6 +68,7 @@ def compare(given: CompareArguments) -> None:
         write_text(given.report, json.dumps(report, indent=2) + "\n")
     if given.page is not None:
         write_text(given.page, made.page)
+    read.tell()
     typer.echo(_table(report))
     raise typer.Exit(DONE)
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from fullpose_server.cli._arguments import ReadingArguments, command
+from fullpose_server.cli._exit import say
 
 File = Annotated[Path, typer.Argument(metavar="FILE", help="A log with one attitude.")]
 
@@ -29,7 +30,7 @@ class InspectArguments(ReadingArguments):
 
 def inspect(asked: InspectArguments) -> None:
     """Print the findings, one a line, the warnings first. Exit 2: bad input."""
-    from fullpose_server.cli._flight import input_report, read_options, tell
+    from fullpose_server.cli._flight import input_report, read_options, statements
     from fullpose_server.formats.diagnosis import diagnosis_report
     from fullpose_server.formats.rig_file import find_rig
     from fullpose_server.formats.trajectory_file import read_trajectory
@@ -37,8 +38,9 @@ def inspect(asked: InspectArguments) -> None:
     rig = None if asked.rig is None else find_rig(asked.rig).rig
     # A gap is what is looked for here: it is no reason to say nothing.
     flight = read_trajectory(asked.flight, options=replace(read_options(asked), bridge_gaps=True))
-    tell(asked.flight, flight)
     report = diagnosis_report(flight.time, flight.q, rig)
+    for statement in statements(asked.flight, flight):
+        say(statement)
     if asked.as_json:
         convention, taken = flight.convention.value, input_report(asked.flight, flight)
         head = {"file": str(asked.flight), "convention": convention, "input": taken}

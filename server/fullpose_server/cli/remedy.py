@@ -66,6 +66,7 @@ def remedy(asked: RemedyArguments) -> None:
                 smoothed=told.smoothed,
             )  # fmt: skip
         except NoRemedyError as error:
+            read.tell()
             fail(f"{flight}: {error}", NOT_FEASIBLE)
     done = found.remedy
     made = make_report(done.plan.solution, verify(done.time, done.plan.solution.angles, done.rig, done.attitude))
@@ -80,6 +81,7 @@ def remedy(asked: RemedyArguments) -> None:
         write_solution(asked.out, done.plan.solution, progress)
     if asked.report is not None:
         write_text(asked.report, json.dumps(made, indent=2) + "\n")
+    read.tell()
     if not made["feasible"]:
         fail(
             f"{flight} does not fit {chosen.name} by {kind}; the best found: {found.described['statement']}",

@@ -61,10 +61,11 @@ def solve(asked: SolveArguments) -> None:
     flight, method = asked.flight, asked.method
     chosen = find_rig(asked.rig).rig
     check_outputs({"--out": asked.out, "--report": asked.report, "--plot": asked.plot}, flight, asked.rig)
+    options = _options(method, asked.option or [])  # first: a file may take long to read
     read = read_flight(flight, asked, chosen, asked.start)
     attitude = dcm_from_quaternion(read.q)
     told = within(read, attitude, asked.tolerance)
-    solution, planned = _solve(told, chosen, method, asked.option or [])
+    solution, planned = _solve(told, chosen, method, options)
     made = told.reported(make_report(solution, verify(solution.time, solution.angles, chosen, attitude)))
     solution = told.measured(solution)
     made["warnings"] = [{"code": c.code, "message": c.message} for c in read.warnings]
@@ -83,6 +84,7 @@ def solve(asked: SolveArguments) -> None:
         from fullpose_server.pages.plot_page import plot_page
 
         write_text(asked.plot, plot_page(solution, made, flight.name))
+    read.tell()
     typer.echo(_summary(made))
     why, advised = why_infeasible(made), advice(made)
     statement = made["verdict"]["statement"] if planned is not None else ""
@@ -102,13 +104,18 @@ def solve(asked: SolveArguments) -> None:
     raise typer.Exit(DONE)
 
 
-def _solve(told: Within, rig: "Rig", method: str, texts: list[str]) -> tuple["Solution", "Plan | None"]:
-    """The solution; of method plan the whole plan, too, which says what the verdict rests on."""
+def _options(method: str, texts: list[str]) -> Any:
+    """The options of a method, of `name=value` each. Raises `InputError`."""
     from fullpose.registry import method_options, parse_option
+
+    return method_options(method, dict(parse_option(text, method) for text in texts))
+
+
+def _solve(told: Within, rig: "Rig", method: str, options: Any) -> tuple["Solution", "Plan | None"]:
+    """The solution; of method plan the whole plan, too, which says what the verdict rests on."""
     from fullpose.solve import solve_flight
     from fullpose_server.planning.remaining_tolerance import with_remaining
 
-    options = method_options(method, dict(parse_option(text, method) for text in texts))
     with progress_bar(method) as progress:
         solved = solve_flight(
             told.flight.time,

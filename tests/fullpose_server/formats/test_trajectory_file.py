@@ -178,6 +178,7 @@ def test_time_in_milliseconds_is_pointed_out(tmp_path: Path) -> None:
     [
         (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), "a PNG image"),
         (b"\x00" * 100, "another binary file"),
+        (b"\x00\x01\x00\x02\x00\x03", "another binary file"),
         (bytes(range(128, 256)) * 20, "another binary file"),
         (b"\x1f\x8b\x08abc", "a gzip file"),
         (b"PK\x03\x04\x00\x00", "a ZIP archive"),

@@ -63,6 +63,7 @@ ROWS: dict[str, list[dict[str, Any]]] = {
             "tags": json.dumps(["old"]),
             "notes": "kept",
             "search": "überflug\nkept\x1fold\x1f",
+            "input": json.dumps({"format": "csv", "statement": "as it is"}),
         }
     ],
     "plans": [
@@ -220,7 +221,7 @@ def test_all_rows_of_a_revision_are_read_by_today_s_code(filled: tuple[Location,
     database = Database(location)
     (flight,) = TrajectoryStore(database, tmp_path / "trajectories").all(wanted=Wanted.of("üBERflug", None))
     assert (flight.sha256, flight.name, flight.created, flight.uniform) == (FLIGHT, "Überflug", 1000.25, True)
-    assert flight.input is None
+    assert flight.input == ({"format": "csv", "statement": "as it is"} if revision >= "0009" else None)
     assert flight.warnings == [{"code": "c", "message": "m"}]
     assert (flight.tags, flight.notes) == ((["old"], "kept") if revision >= "0007" else ([], ""))
     plans = PlanStore(database, tmp_path / "plans")

@@ -6,7 +6,7 @@ import gzip
 import io
 import re
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, cast
@@ -107,7 +107,7 @@ def encoding_of(head: bytes) -> str | None:
             return name if _decodes(head, name) else None
     if b"\0" in head:
         return _unmarked_utf_16(head)
-    if any(byte < 9 or (13 < byte < 32 and byte != 27) for byte in head):
+    if _has_controls(head):
         return None
     if _decodes(head, "utf-8"):
         return "utf-8"
@@ -135,8 +135,14 @@ def _unmarked_utf_16(head: bytes) -> str | None:
         zeros = head[parity::2].count(0)
         others = head[1 - parity :: 2].count(0)
         if zeros > 0.7 * pairs and not others and _decodes(head, name):
-            return name
+            text = codecs.getincrementaldecoder(name)("strict").decode(head)
+            return None if _has_controls(map(ord, text)) else name
     return None
+
+
+def _has_controls(codes: Iterable[int]) -> bool:
+    """Whether a character is a control that no text has: neither white space nor escape."""
+    return any(code < 9 or (13 < code < 32 and code != 27) for code in codes)
 
 
 def _is_chinese(head: bytes) -> bool:
