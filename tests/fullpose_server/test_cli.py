@@ -153,6 +153,7 @@ def test_bad_input_is_one_clear_line_and_out_is_untouched(tmp_path: Path, text: 
         (("--convention", "xyz"), "ned"),
         (("--option", "nonsense=1"), "nonsense"),
         (("--option", "nonsense"), "name=value"),
+        (("--tolerance", "91"), "--tolerance"),
         (("--out", "/dev/null/x.csv"), "place to write"),
         (("--out", "no/such/folder/x.csv"), "no folder"),
         (("--report", "no/such/folder/r.json"), "no folder"),
