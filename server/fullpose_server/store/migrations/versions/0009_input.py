@@ -10,10 +10,9 @@ depends_on = None
 
 
 def upgrade() -> None:
-    with op.batch_alter_table("trajectories") as table:
-        table.add_column(sa.Column("input", sa.JSON(), nullable=True))
+    op.add_column("trajectories", sa.Column("input", sa.JSON(), nullable=True))
 
 
 def downgrade() -> None:
-    with op.batch_alter_table("trajectories") as table:
-        table.drop_column("input")
+    # Not as a batch, which makes the table anew: SQLite drops no table that plans refer to.
+    op.drop_column("trajectories", "input")
