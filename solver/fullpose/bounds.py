@@ -17,7 +17,7 @@ MET = 1e-7  # of a limit: over it by less counts as inside, in the planner
 
 # What the check of a path and the guard of a rig let pass: rounding, and the touch of a path that stands on the end of
 # a range, which an iteration meets to the square root of its own precision.
-POSITION_TOLERANCE = 1e-8  # [rad] 0.002 arc seconds
+POSITION_TOLERANCE = 2e-9  # [rad] 0.0004 arc seconds: what `MET` is of the planner's unit of positions
 TOLERANCE = 1e-6  # of a rate or acceleration limit
 
 
