@@ -1,0 +1,68 @@
+// @vitest-environment happy-dom
+import { fireEvent, screen } from "@testing-library/svelte";
+import { expect, it, vi } from "vitest";
+import type { HowToRead, ReadingPreview } from "../../contract/types";
+import { ApiError } from "../../net/errors";
+import { TestConsole } from "../../testing/console";
+import ReadingDialog from "./ReadingDialog.svelte";
+
+const REFUSED: ReadingPreview = {
+  format: "mcap",
+  table: "/front",
+  tables: ["/front", "/rear"],
+  names: ["time"],
+  units: ["s"],
+  head: [["0.0"]],
+  profiles: [],
+  profile: null,
+  columns: null,
+  problem: "2 attitudes",
+  flight: null,
+};
+const READ: ReadingPreview = {
+  ...REFUSED,
+  problem: null,
+  flight: {
+    samples: 1,
+    duration_s: 0,
+    convention: "enu",
+    statement: "taken as enu",
+    warnings: [],
+    time_s: [],
+    yaw_deg: [],
+    pitch_deg: [],
+    roll_deg: [],
+    q: [],
+  },
+};
+// happy-dom has no canvas to plot on.
+vi.mock("../plots/TimePlot.svelte", () => ({ default: () => undefined }));
+
+const file = new File([""], "two.mcap");
+const storing = (): HTMLButtonElement => screen.getByRole("button", { name: "Store the flight" });
+
+it("lets one of several sources be chosen, and stores what was read", async () => {
+  const store = vi.fn();
+  const lookAt = (how: unknown) => ((how as HowToRead).source === "/rear" ? READ : REFUSED);
+  const console = new TestConsole({ lookAt });
+  console.show(ReadingDialog, { file, first: {}, store, close: () => undefined });
+  expect((await screen.findByRole("status")).textContent).toBe("2 attitudes");
+  expect(storing().disabled).toBe(true);
+  await fireEvent.change(screen.getByLabelText("Source"), { target: { value: "/rear" } });
+  expect(await screen.findByText("taken as enu")).toBeTruthy();
+  await fireEvent.click(storing());
+  expect(store).toHaveBeenCalledWith(file, { source: "/rear" });
+});
+
+it("stores nothing while it is read, nor where the server refuses to read it so", async () => {
+  const store = vi.fn();
+  const lookAt = (how: unknown) => ((how as HowToRead).bridge_gaps ? new ApiError(422, "too long", []) : READ);
+  new TestConsole({ lookAt }).show(ReadingDialog, { file, first: {}, store, close: () => undefined });
+  await screen.findByText("taken as enu");
+  await fireEvent.click(screen.getByLabelText("Fly through gaps by interpolation"));
+  await fireEvent.click(storing());
+  expect((await screen.findByRole("status")).textContent).toBe("too long");
+  expect(screen.queryByText("taken as enu")).toBeNull();
+  await fireEvent.click(storing());
+  expect(store).not.toHaveBeenCalled();
+});
