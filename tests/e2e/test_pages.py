@@ -89,7 +89,8 @@ def with_the_longest_run(route: Route) -> None:
     ended = {"end": "fault", "end_code": "tracking_error_beyond_limit", "incident": "live_source_lost"}
     figures = {"samples": 3_600_000, "lost_samples": 12_345, "duration_s": 3600.0, "max_tracking_error_deg": 359.1234}
     kept = {"started_at": "2026-11-29T23:59:59.999Z", "complete": False, "error": None, "max_solve_error_deg": 1.8e-14}
-    first = {"id": "the-longest", "pinned": True, **longest, **ended, **figures, **kept}
+    labels = {"tags": ["acceptance-of-november"], "notes": ""}
+    first = {"id": "the-longest", "pinned": True, **longest, **ended, **figures, **kept, **labels}
     route.fulfill(response=answer, json=[first, *listed])
 
 
@@ -141,7 +142,7 @@ def test_tablet_holds_every_page(pages: Pages, stocked: Stock, shots: Path) -> N
 
 def test_a_reload_keeps_theme_and_address(page: Page, stocked: Stock) -> None:
     page.goto(f"/plans/{stocked.plan['id']}")
-    shown = page.get_by_role("region", name="Plan of Slow roll")
+    shown = page.get_by_role("region", name="Plan of Slow roll", exact=True)
     expect(shown).to_be_visible(timeout=SOON_MS)
     page.get_by_role("button", name="Use the light theme").click()
     page.reload()

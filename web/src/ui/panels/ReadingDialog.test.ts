@@ -35,8 +35,9 @@ const READ: ReadingPreview = {
     q: [],
   },
 };
-// happy-dom has no canvas to plot on.
-vi.mock("../plots/TimePlot.svelte", () => ({ default: () => undefined }));
+// happy-dom has no canvas to plot on: what is drawn there goes nowhere.
+const nowhere = new Proxy({}, { get: () => () => ({ width: 0 }), set: () => true });
+HTMLCanvasElement.prototype.getContext = (() => nowhere) as never;
 
 const file = new File([""], "two.mcap");
 const storing = (): HTMLButtonElement => screen.getByRole("button", { name: "Store the flight" });
