@@ -14,6 +14,7 @@ from fullpose._typing import Array
 from fullpose.bounds import MET
 from fullpose.plan.beam_path import BREADTHS
 from fullpose.plan.fallback import Fallback
+from fullpose.plan.level_path import is_level, level_path
 from fullpose.plan.node_paths import Query, cheapest, searched
 from fullpose.plan.plane_path import PlaneBreadth, plane_path, slow_frames
 from fullpose.plan.refinement import Task, failed_places, flown_beside, how_far, refined
@@ -103,6 +104,12 @@ def in_the_plane(breadth: PlaneBreadth) -> Step:
     return step
 
 
+def on_sheets(task: Task, state: State) -> State:
+    """Take the path that changes between the sheets of a level flight's solutions."""
+    angles = level_path(task.problem)
+    return state if angles is None else judged(task, state, Path(angles, (), np.zeros(len(angles), np.int32)))
+
+
 def beside(paths: Callable[[Fallback], tuple[Array, ...]]) -> Step:
     """Refine paths of the fallback that are exact and inside every limit; one that does not come out so is taken as
     it is. No flight is refused that a method flies which looks at less of it."""
@@ -188,6 +195,11 @@ def slow(task: Task, state: State) -> bool:
     return free_and_brief(task, state) and bool(slow_frames(task.problem.rig))
 
 
+def level(task: Task, state: State) -> bool:
+    """Where the flight is level throughout."""
+    return free(task, state) and is_level(task.problem)
+
+
 def coarse(task: Task, state: State) -> bool:
     """Where the grid is not the fine one yet."""
     return state.query.grid > task.problem.options.fine_grid
@@ -217,6 +229,7 @@ ATTEMPTS = (
     Attempt(0, "cheapest node path", always, along(kept)),
     Attempt(1, "straight through the singularity", always, along(straight)),
     Attempt(2, "beside the step method", always, beside(lambda fallback: (fallback.exact,))),
+    Attempt(2, "sheets of level flight", level, on_sheets),
     Attempt(2, "plane of time and base angle", free_and_brief, in_the_plane(PlaneBreadth(1000, 1.0, 1.0))),
     Attempt(2, "beam search", free, along(searching(0))),
     Attempt(2, "plane, slow frames lead", slow, in_the_plane(PlaneBreadth(4000, 2.0, 2.0, slow_lead=True))),
