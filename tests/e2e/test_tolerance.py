@@ -29,7 +29,7 @@ def test_the_slider_shows_what_a_tolerance_does_and_the_plan_is_within_it(
     flight = noisy_flight(server)
     console = Console(page, "vertical-limited")
     console.open()
-    page.get_by_label("Flight", exact=True).select_option(flight)
+    page.get_by_role("combobox", name="Flight", exact=True).select_option(flight)
     page.get_by_label("Within a tolerance").check()
     slider = page.get_by_role("slider", name="Tolerance")
     expect(slider).to_be_visible(timeout=SLOW_MS)
