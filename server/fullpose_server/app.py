@@ -1,7 +1,7 @@
 """The app factory: settings in, a FastAPI app out. What lives as long as the server is built by `wiring`."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -9,6 +9,7 @@ import anyio
 from asgi_correlation_id import CorrelationIdMiddleware
 from fastapi import Depends, FastAPI, Request, Response
 from fastapi.openapi.docs import get_swagger_ui_html
+from fastapi.routing import APIRoute
 from starlette.requests import HTTPConnection
 
 from fullpose_server.api import errors, openapi
@@ -30,6 +31,7 @@ from fullpose_server.api.routes import (
     login,
     login_provider,
     plans,
+    reading,
     replay,
     rigs,
     runs,
@@ -54,6 +56,7 @@ from fullpose_server.wiring import serving
 ROUTES = (
     rigs,
     trajectories,
+    reading,
     plans,
     compare,
     sessions,
@@ -102,7 +105,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.include_router(scene_router, dependencies=[Depends(_scene)])
     app.mount("/", console())
     uploads = settings.max_upload_bytes + uploading.ENVELOPE
-    larger = {f"{API}/trajectories": uploads, f"{API}/solve": settings.max_json_bytes}
+    larger = {f"{API}/solve": settings.max_json_bytes} | dict.fromkeys(_taking_files(), uploads)
     app.add_middleware(BodyLimit, settings=settings, larger=larger)
     app.add_middleware(SocketLimit, settings=settings)
     app.add_middleware(Admission)
@@ -175,3 +178,11 @@ async def _scene_problem(request: Request, error: Exception) -> Response:
         case _:
             code, status = "scene", 404
     return problem_response(ApiError(status, code, str(error)).problem, request)
+
+
+def _taking_files() -> Iterator[str]:
+    """The paths of routes whose body is a form with a file."""
+    for route in (route for module in ROUTES for route in module.router.routes if isinstance(route, APIRoute)):
+        body = (route.openapi_extra or {}).get("requestBody", {})
+        if uploading.FORM in body.get("content", {}):
+            yield f"{API}{route.path}"

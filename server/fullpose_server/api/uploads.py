@@ -16,6 +16,7 @@ from fullpose_server.api.problems import ApiError
 if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks
 
+FORM = "multipart/form-data"  # the body of a route that takes a file
 FIELD_LIMIT = 4096  # bytes of a form field that is not the file
 FIELDS = (
     "name",
@@ -157,3 +158,9 @@ class _Form:
     def _part_end(self) -> None:
         if not self._is_file:
             self.upload.fields[self._name] = self._text.decode("utf-8", "replace")
+
+
+def announced(request: Request) -> int:
+    """Bytes that are to come; they are stored twice, as they are and as arrays, of about the same size."""
+    length = request.headers.get("content-length", "")
+    return 2 * int(length) if length.isdecimal() and len(length) < 16 else 0

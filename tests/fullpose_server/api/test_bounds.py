@@ -195,3 +195,12 @@ def test_jobs_of_one_client_and_of_all(tmp_path: Path) -> None:
         assert int(fifth.headers["retry-after"]) > 0
         assert server.http.delete(f"/plans/{made[2].json()['id']}").status_code == 204
         assert ask("joe").status_code == 202
+
+
+def test_a_file_that_is_looked_at_may_be_as_large_as_an_upload(server: LiveServer) -> None:
+    pad = "0" * 1500
+    text = "time_s,yaw_deg,pitch_deg,roll_deg,pad\n" + "".join(f"{0.01 * k:.2f},1,2,3,{pad}\n" for k in range(1000))
+    assert len(text) > server.settings.max_body_bytes
+    answer = server.http.post("/reading", files={"file": ("flight.csv", text)})
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["flight"]["samples"] == 1000

@@ -107,7 +107,7 @@ TUM = "# timestamp tx ty tz qx qy qz qw\n" + "".join(f"{0.02 * k} 0 0 0 0 0 0 1\
 
 
 def preview(server: LiveServer, text: str, **fields: str) -> dict[str, Any]:
-    answer = server.http.post("/trajectories/preview", data=fields, files={"file": ("flight.txt", text)})
+    answer = server.http.post("/reading", data=fields, files={"file": ("flight.txt", text)})
     assert answer.status_code == 200, answer.text
     found: dict[str, Any] = answer.json()
     return found

@@ -444,6 +444,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/reading": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Read File
+         * @description Look at a file and store nothing: its first rows, what its columns are taken for, and the flight that makes.
+         */
+        post: operations["read_file_api_v1_reading_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/rigs": {
         parameters: {
             query?: never;
@@ -912,26 +932,6 @@ export interface paths {
         get: operations["tolerance_of_trajectory_api_v1_trajectories__sha256__tolerance_get"];
         put?: never;
         post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/trajectories/preview": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Preview File
-         * @description Look at a file and store nothing: its first rows, what its columns are taken for, and the flight that makes.
-         */
-        post: operations["preview_file_api_v1_trajectories_preview_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -6912,6 +6912,163 @@ export interface operations {
             };
         };
     };
+    read_file_api_v1_reading_post: {
+        parameters: {
+            query?: {
+                points?: number;
+            };
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "multipart/form-data": {
+                    /**
+                     * @description Fly through gaps by interpolation; they are refused otherwise
+                     * @default false
+                     */
+                    bridge_gaps?: boolean;
+                    /** @description A column map as JSON (`ColumnMap`), in the place of a profile */
+                    columns?: string;
+                    /**
+                     * @description The axes it is written in. Default: those of its profile
+                     * @enum {string}
+                     */
+                    convention?: "nue" | "ned" | "enu";
+                    /**
+                     * @description Of samples with one stamp, keep the first
+                     * @default false
+                     */
+                    drop_duplicates?: boolean;
+                    /** Format: binary */
+                    file: string;
+                    /** @description Which column is what, by a shipped name. Default: guessed */
+                    profile?: string;
+                    /** @description Of a file with several attitudes: the topic, message, group or sheet. Default: the only one */
+                    source?: string;
+                    /**
+                     * @description Refuse a flight that there is a warning about
+                     * @default false
+                     */
+                    strict?: boolean;
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReadingPreview"];
+                };
+            };
+            /** @description The body is not what its type says */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rest of the request did not come */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Larger than a bound of this server */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many at once: try again later */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No room on the disk */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_rigs_api_v1_rigs_get: {
         parameters: {
             query?: never;
@@ -9697,163 +9854,6 @@ export interface operations {
             };
             /** @description The database or a process that it takes does not answer */
             503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Any error, as a problem document */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    preview_file_api_v1_trajectories_preview_post: {
-        parameters: {
-            query?: {
-                points?: number;
-            };
-            header?: {
-                /** @description Who commands, while no users are configured: a name for the lease and the audit */
-                "x-fullpose-client"?: string | null;
-            };
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "multipart/form-data": {
-                    /**
-                     * @description Fly through gaps by interpolation; they are refused otherwise
-                     * @default false
-                     */
-                    bridge_gaps?: boolean;
-                    /** @description A column map as JSON (`ColumnMap`), in the place of a profile */
-                    columns?: string;
-                    /**
-                     * @description The axes it is written in. Default: those of its profile
-                     * @enum {string}
-                     */
-                    convention?: "nue" | "ned" | "enu";
-                    /**
-                     * @description Of samples with one stamp, keep the first
-                     * @default false
-                     */
-                    drop_duplicates?: boolean;
-                    /** Format: binary */
-                    file: string;
-                    /** @description Which column is what, by a shipped name. Default: guessed */
-                    profile?: string;
-                    /** @description Of a file with several attitudes: the topic, message, group or sheet. Default: the only one */
-                    source?: string;
-                    /**
-                     * @description Refuse a flight that there is a warning about
-                     * @default false
-                     */
-                    strict?: boolean;
-                };
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ReadingPreview"];
-                };
-            };
-            /** @description The body is not what its type says */
-            400: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Nobody signed in, where people are configured */
-            401: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
-            403: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description No such thing */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The rest of the request did not come */
-            408: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Larger than a bound of this server */
-            413: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Validation Error */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Too many at once: try again later */
-            429: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The database or a process that it takes does not answer */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description No room on the disk */
-            507: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -13,11 +13,11 @@ export function upload(file: File, how: HowToRead, progress: Progress): Promise<
 
 /** Looks at a file; nothing of it is stored. */
 export function lookAt(file: File, how: HowToRead): Promise<ReadingPreview> {
-  return send<ReadingPreview>("/api/v1/trajectories/preview", formOf(how, file), () => undefined);
+  return send<ReadingPreview>("/api/v1/reading", formOf(how, file), () => undefined);
 }
 
 function send<Answer>(
-  path: "/api/v1/trajectories" | "/api/v1/trajectories/preview",
+  path: "/api/v1/trajectories" | "/api/v1/reading",
   form: FormData,
   progress: Progress,
 ): Promise<Answer> {

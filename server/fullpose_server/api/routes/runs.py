@@ -8,9 +8,9 @@ from uuid import uuid4
 
 from fastapi import APIRouter, Request
 from pydantic import TypeAdapter
-from starlette.background import BackgroundTask
 from starlette.responses import FileResponse, Response
 
+from fullpose_server.api.answer_file import AnswerFile
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.labels import WantedDep, changed
@@ -86,8 +86,7 @@ async def run_evidence(run: str, services: ServicesDep) -> FileResponse:
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
-    done = BackgroundTask(draft.unlink, missing_ok=True)
-    return FileResponse(draft, media_type="application/zip", filename=f"{run}.zip", background=done)
+    return AnswerFile(draft, media_type="application/zip", filename=f"{run}.zip")
 
 
 def _check_flown(services: Services, run: str) -> None:

@@ -6,7 +6,6 @@ from uuid import uuid4
 import numpy as np
 from fastapi import APIRouter, Request, WebSocket
 from pydantic import TypeAdapter, ValidationError
-from starlette.background import BackgroundTask
 from starlette.responses import FileResponse
 
 from fullpose.errors import InputError, SolverError
@@ -14,6 +13,7 @@ from fullpose.flight import bad_time, check_flight
 from fullpose.methods.base import Stepper
 from fullpose.registry import find_step, method_options
 from fullpose.verify import attitude_errors, payload_attitudes
+from fullpose_server.api.answer_file import answered
 from fullpose_server.api.attitudes import attitudes, limited_list
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.errors import problem_of
@@ -53,14 +53,9 @@ async def solve_batch(request: Request, services: ServicesDep) -> FileResponse:
     try:
         await receive_body(request, body, services.settings.max_json_bytes)
         asked = SolveRequest(str(body), str(answer), str(services.rigs.folder), services.settings.max_solve_samples)
-        await services.offload.run(Work.SOLVE, asked.to_json())
-    except BaseException:
-        answer.unlink(missing_ok=True)
-        raise
+        return await answered(services, Work.SOLVE, asked, answer)
     finally:
         body.unlink(missing_ok=True)
-    done = BackgroundTask(answer.unlink, missing_ok=True)
-    return FileResponse(answer, media_type="application/json", background=done)
 
 
 @router.websocket("/solve")

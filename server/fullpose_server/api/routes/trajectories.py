@@ -10,13 +10,13 @@ from uuid import uuid4
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import TypeAdapter
-from starlette.background import BackgroundTask
 from starlette.responses import FileResponse
 
+from fullpose_server.api.answer_file import answered
 from fullpose_server.api.changes import CHANGE
 from fullpose_server.api.deps import Services, ServicesDep
 from fullpose_server.api.labels import WantedDep, changed
-from fullpose_server.api.offload.work import DiagnoseRequest, PreviewRequest, ReadRequest, ToleranceRequest, Work
+from fullpose_server.api.offload.work import DiagnoseRequest, ReadRequest, ToleranceRequest, Work
 from fullpose_server.api.openapi import BUSY
 from fullpose_server.api.paging import LINKED, PageDep
 from fullpose_server.api.problems import ApiError
@@ -24,8 +24,8 @@ from fullpose_server.api.reading import READING_FIELDS, reading_options
 from fullpose_server.api.schemas.base import Name, Notice
 from fullpose_server.api.schemas.diagnosis import DiagnosisOut
 from fullpose_server.api.schemas.labels import LabelsIn
-from fullpose_server.api.schemas.trajectories import ReadingPreview, ToleranceEffect, TrajectoryOut, TrajectoryPreview
-from fullpose_server.api.uploads import receive_body, receive_form
+from fullpose_server.api.schemas.trajectories import ToleranceEffect, TrajectoryOut, TrajectoryPreview
+from fullpose_server.api.uploads import FORM, announced, receive_body, receive_form
 from fullpose_server.errors import InUseError
 from fullpose_server.formats.flight_folder import FlightFacts, read_arrays
 from fullpose_server.formats.trajectory import euler_deg
@@ -49,7 +49,7 @@ UPLOAD_BODY = {
     "requestBody": {
         "required": True,
         "content": {
-            "multipart/form-data": {"schema": _FORM},
+            FORM: {"schema": _FORM},
             "application/json": {"schema": {"$ref": "#/components/schemas/TrajectoryIn"}},
         },
     }
@@ -71,11 +71,11 @@ async def add_trajectory(request: Request, response: Response, services: Service
     """Upload a flight. Refused as a whole where anything in it is wrong; the problem names line and column."""
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     settings = services.settings
-    services.disk.check(_announced(request))
+    services.disk.check(announced(request))
     source = services.uploads / uuid4().hex
     folder = await asyncio.to_thread(services.trajectories.draft)
     try:
-        if kind == "multipart/form-data":
+        if kind == FORM:
             upload = await receive_form(request, source, settings.max_upload_bytes)
             file = upload.filename or "upload"
             asked = _read_request(services, source, folder)
@@ -97,59 +97,6 @@ async def add_trajectory(request: Request, response: Response, services: Service
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"{request.url.path}/{row.sha256}"
     return _out(row)
-
-
-_PREVIEW_BODY = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["file"],
-                    "properties": {"file": {"type": "string", "format": "binary"}, **READING_FIELDS},
-                }
-            }
-        },
-    }
-}
-
-
-@router.post(
-    "/preview", response_model=ReadingPreview, openapi_extra=_PREVIEW_BODY, dependencies=CHANGE, responses=BUSY
-)
-async def preview_file(
-    request: Request, services: ServicesDep, points: Annotated[int, Query(ge=2, le=20_000)] = 500
-) -> FileResponse:
-    """Look at a file and store nothing: its first rows, what its columns are taken for, and the flight that makes."""
-    settings = services.settings
-    source, answer = services.uploads / uuid4().hex, services.uploads / uuid4().hex
-    try:
-        upload = await receive_form(request, source, settings.max_upload_bytes)
-        asked = PreviewRequest(
-            source=str(source),
-            folder=str(answer),
-            rows=settings.max_upload_rows,
-            columns=settings.max_upload_columns,
-            bytes=settings.max_upload_bytes,
-            file=upload.filename or "upload",
-            how=reading_options(upload.fields),
-            points=points,
-        )
-        await services.offload.run(Work.PREVIEW, asked.to_json())
-    except BaseException:
-        answer.unlink(missing_ok=True)
-        raise
-    finally:
-        source.unlink(missing_ok=True)
-    done = BackgroundTask(answer.unlink, missing_ok=True)
-    return FileResponse(answer, media_type="application/json", background=done)
-
-
-def _announced(request: Request) -> int:
-    """Bytes that are to come; they are stored twice, as they are and as arrays, of about the same size."""
-    length = request.headers.get("content-length", "")
-    return 2 * int(length) if length.isdecimal() and len(length) < 16 else 0
 
 
 def _read_request(services: Services, source: Path, folder: Path) -> ReadRequest:
@@ -230,13 +177,7 @@ async def diagnose_trajectory(sha256: str, services: ServicesDep, rig: Name | No
     answer = services.uploads / uuid4().hex
     folder = services.trajectories.folder(sha256)
     asked = DiagnoseRequest(str(folder), row.samples, str(answer), str(services.rigs.folder), rig)
-    try:
-        await services.offload.run(Work.DIAGNOSE, asked.to_json())
-    except BaseException:
-        answer.unlink(missing_ok=True)
-        raise
-    done = BackgroundTask(answer.unlink, missing_ok=True)
-    return FileResponse(answer, media_type="application/json", background=done)
+    return await answered(services, Work.DIAGNOSE, asked, answer)
 
 
 @router.delete(
