@@ -33,6 +33,16 @@ def vertical_view(horizontal: bool, C: Array) -> tuple[float, ...]:
     return C[0, 0], C[0, 1], C[0, 2], C[1, 0], C[1, 1], C[1, 2], C[2, 0], C[2, 1], C[2, 2]
 
 
+def vertical_views(attitude: Array, horizontal: bool) -> Array:
+    """`vertical_view` of attitudes (n, 3, 3). (n, 3, 3)"""
+    if not horizontal:
+        return attitude
+    turned = attitude[:, [0, 2, 1]][:, :, [0, 2, 1]]
+    turned[:, 2, :] *= -1.0
+    turned[:, :, 2] *= -1.0
+    return turned
+
+
 @inlined
 def base_chart(horizontal: bool, C: Array, d1: float, branch: float, d: Array) -> None:
     """d <- the solution with base angle d1 and sign(cos d3) = branch (+1 or -1), angles in (-pi, pi] but d1 itself.

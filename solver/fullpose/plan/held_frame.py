@@ -1,6 +1,6 @@
 """The exact path that shares one frame's angles with a given path: the self-motion in closed form, by any frame.
 
-Plain NumPy, a stretch of samples at once (mathematics, section 3). The base and the inner frame may be at any angle;
+A stretch of samples at once (mathematics, section 3). The base and the inner frame may be at any angle;
 the outer and the middle one only where sin d2 cos d3 = sin(pitch) leaves the other an angle, whatever the rest do.
 """
 
@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._typing import Array
-from fullpose.charts import TURN
+from fullpose.charts import TURN, vertical_views
 from fullpose.rig import Rig
+from fullpose.trajectory.base_curve import frames_of_base
 
 BASE, OUTER, MIDDLE, INNER = range(4)
 HALF = math.pi
@@ -40,26 +41,25 @@ def held_frame(rig: Rig, attitude: Array, angles: Array, frame: int) -> HeldFram
 
     Of the two branches the one that lies nearer to the first of these, and continuous from there.
     """
-    V = _vertical_view(attitude) if rig.geometry.horizontal else attitude
+    V = vertical_views(attitude, rig.geometry.horizontal)
     nearest = _nearest(V, angles[:, frame], frame)
     given = np.where(np.abs(nearest - angles[:, frame]) <= NO_POSE, nearest, angles[:, frame])
     if rig.geometry.horizontal and frame == OUTER:
         given = -given
-    branches = [_on_branch(rig, V, given, angles[0], frame, branch) for branch in (1.0, -1.0)]
+    branches = [_on_branch(rig, attitude, _BASE_ANGLE[frame](V, given, sign), angles[0]) for sign in (1.0, -1.0)]
     found, exists = min(branches, key=lambda each: float(np.abs(each[0][0] - angles[0]).max()))
     found[:, frame] = angles[:, frame]
     return HeldFrame(found, exists, nearest)
 
 
-def _on_branch(
-    rig: Rig, V: Array, given: Array, first: Array, frame: int, branch: float
-) -> tuple[Array, NDArray[np.bool_]]:
-    """(angles (n, 4) [rad] from the turns nearest to `first` on, where they exist (n,)) on one branch."""
-    base, upright, exists = _BASE_ANGLE[frame](V, given, branch)
-    found = _base_chart(V, base, np.where(upright, 1.0, -1.0))
-    if rig.geometry.horizontal:
-        found[:, OUTER] *= -1.0
-    return _continuous(found, first), exists
+def _on_branch(rig: Rig, attitude: Array, based: _Based, first: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """(angles (n, 4) [rad] from the turns nearest to `first` on, where they exist (n,)) of base angles."""
+    base, upright, exists = based
+    base = np.unwrap(base)
+    base += TURN * np.rint((first[0] - base[0]) / TURN)
+    found = np.empty((len(base), 4))
+    frames_of_base(rig.geometry.horizontal, attitude, base, np.where(upright, 1.0, -1.0), first, found)
+    return found, exists
 
 
 def _base_of_base(_V: Array, given: Array, branch: float) -> _Based:
@@ -100,23 +100,6 @@ def _base_of_inner(V: Array, given: Array, branch: float) -> _Based:
 _BASE_ANGLE = (_base_of_base, _base_of_outer, _base_of_middle, _base_of_inner)
 
 
-def _base_chart(V: Array, base: Array, branch: Array) -> Array:
-    """(n, 4) [rad] of the vertical rig from d1 (n,) and the sign of cos d3 (n,)."""
-    c, s = np.cos(base), np.sin(base)
-    m00, m01, m02 = V[:, 0, 0] * c - V[:, 0, 2] * s, V[:, 0, 1], V[:, 0, 0] * s + V[:, 0, 2] * c
-    m10, m20 = V[:, 1, 0] * c - V[:, 1, 2] * s, V[:, 2, 0] * c - V[:, 2, 2] * s
-    outer = np.arctan2(branch * m01, branch * m00)
-    C, S = np.cos(outer), np.sin(outer)
-    inner = np.arctan2(m20 * S - V[:, 2, 1] * C, V[:, 1, 1] * C - m10 * S)
-    return np.stack([base, outer, np.arctan2(-m02, branch * np.hypot(m00, m01)), inner], axis=1)
-
-
-def _continuous(found: Array, first: Array) -> Array:
-    """Angles (n, 4) without jumps of a turn, from the turns nearest to `first` (4,) on."""
-    found = np.unwrap(found, axis=0)
-    return np.asarray(found + TURN * np.rint((first - found[0]) / TURN))
-
-
 def _nearest(V: Array, given: Array, frame: int) -> Array:
     """The angle (n,) next to `given` (n,) at which the frame leaves the attitude an exact pose."""
     if frame in (BASE, INNER):
@@ -127,11 +110,3 @@ def _nearest(V: Array, given: Array, frame: int) -> Array:
     if frame == OUTER:
         return np.asarray(given + side * np.maximum(0.0, leaned - np.abs(off)))
     return np.asarray(given - side * np.maximum(0.0, np.abs(off) - (0.5 * math.pi - leaned)))
-
-
-def _vertical_view(C: Array) -> Array:
-    """The attitude (n, 3, 3) of a horizontal rig as the vertical one sees it: rows and columns x, z, -y."""
-    turned = C[:, [0, 2, 1]][:, :, [0, 2, 1]]
-    turned[:, 2, :] *= -1.0
-    turned[:, :, 2] *= -1.0
-    return turned

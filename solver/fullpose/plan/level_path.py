@@ -14,12 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.interpolate import BSpline
 
 from fullpose._typing import Array
-from fullpose.charts import TURN
+from fullpose.charts import TURN, vertical_views
 from fullpose.rig import Rig
-from fullpose.trajectory.needles import vertical_rows
+from fullpose.trajectory.clamped_spline import clamped_basis
 from fullpose.trajectory.problem import Problem
 from fullpose.trajectory.qp import Matrices, Matrix, Status
 from fullpose.verify import attitude_errors, payload_attitudes
@@ -51,17 +50,18 @@ def is_level(problem: Problem) -> bool:
     time = problem.time
     if len(time) < 3 or time[-1] - time[0] > LONGEST:
         return False
-    return bool(np.abs(vertical_rows(problem.attitude, problem.rig.geometry.horizontal)[:, 1]).max() < LEVEL)
+    return bool(np.abs(vertical_views(problem.attitude, problem.rig.geometry.horizontal)[:, 0, 1]).max() < LEVEL)
 
 
 def level_path(problem: Problem) -> Array | None:
     """The exact path (n, 4) [rad] with the most room of those tried; None where none has any."""
     best: tuple[float, Array] | None = None
     sheets = _Sheets(problem)
+    found_corners = [(corner, sheets.limits(corner)) for corner in corners(problem)]
     for pattern in PATTERNS:
-        for corner in corners(problem):
+        for corner, limits in found_corners:
             for changes in _changes(problem.time, len(pattern) - 1):
-                found = sheets.best(corner, pattern, changes)
+                found = sheets.best(corner, limits, pattern, changes)
                 if found is not None and (best is None or found[0] < best[0]):
                     best = found
                 if best is not None and best[0] <= ENOUGH:
@@ -89,10 +89,8 @@ def corners(problem: Problem) -> Iterator[Corner]:
 
 def _yaw_and_roll(attitude: Array, horizontal: bool) -> tuple[Array, Array]:
     """(d1 + d3, d4) [rad], unwrapped, of level attitudes (n, 3, 3) where the outer frame is at 0."""
-    rows = vertical_rows(attitude, horizontal)
-    # The second column as the vertical rig sees it: y, or z of the horizontal one.
-    v11, v21 = (attitude[:, 2, 2], -attitude[:, 1, 2]) if horizontal else (attitude[:, 1, 1], attitude[:, 2, 1])
-    return np.unwrap(np.arctan2(-rows[:, 2], rows[:, 0])), np.unwrap(np.arctan2(-v21, v11))
+    V = vertical_views(attitude, horizontal)
+    return np.unwrap(np.arctan2(-V[:, 0, 2], V[:, 0, 0])), np.unwrap(np.arctan2(-V[:, 2, 1], V[:, 1, 1]))
 
 
 def _centred(rig: Rig, fixed: Array) -> Array:
@@ -116,25 +114,24 @@ class _Sheets:
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
         time = problem.time
-        pieces = max(1, round(float(time[-1] - time[0]) / KNOT))
-        inner = np.linspace(time[0], time[-1], pieces + 1)
-        self._knots = np.r_[[time[0]] * DEGREE, inner, [time[-1]] * DEGREE]
-        self._basis: Matrix = BSpline.design_matrix(time, self._knots, DEGREE).tocsr()
+        self._knots, self._basis = clamped_basis(time, KNOT, DEGREE)
         step = max(1, round(ROWS / float(np.median(np.diff(time)))))
         self._at = np.unique(np.r_[1 : len(time) - 1 : step, len(time) - 2])
 
-    def best(self, corner: Corner, pattern: tuple[bool, ...], changes: tuple[float, ...]) -> tuple[float, Array] | None:
+    def best(
+        self, corner: Corner, limits: tuple[Matrix, Array], pattern: tuple[bool, ...], changes: tuple[float, ...]
+    ) -> tuple[float, Array] | None:
         """(how far beyond the limits, as a share, negative inside; the path (n, 4)) ; None: there is none."""
         problem, count = self._problem, self._basis.shape[1]
         low, high = self._still(corner, pattern, changes)
-        rows, room = self._limits(corner)
+        rows, room = limits
         n = 2 * count
         A, b = self._start(corner)
         answer = problem.solver(
             Matrices(
                 P=sparse.csc_matrix(sparse.identity(n + 1) * RIGID),
                 q=np.append(np.zeros(n), 1.0),
-                G=sparse.hstack([rows, sparse.csc_matrix(-np.ones((len(room), 1)))], format="csc"),
+                G=rows,
                 h=room,
                 A=A,
                 b=b,
@@ -169,8 +166,8 @@ class _Sheets:
         values = np.array([start[2], start[1] - corner.fixed[0, 1]])
         return sparse.hstack([first, sparse.csc_matrix((2, 1))], format="csc"), values
 
-    def _limits(self, corner: Corner) -> tuple[Matrix, Array]:
-        """(rows, room): rows c <= room, shares of every limit at the samples that have rows."""
+    def limits(self, corner: Corner) -> tuple[Matrix, Array]:
+        """(rows, room): rows (c, slack) <= room, shares of every limit at the samples that have rows."""
         rig, time, k = self._problem.rig, self._problem.time, self._at
         before, after = time[k] - time[k - 1], time[k + 1] - time[k]
         basis, fixed = self._basis, corner.fixed
@@ -191,7 +188,9 @@ class _Sheets:
                 for sign, bound in ((1.0, high), (-1.0, -low)):
                     rows.append(sign * row / size)
                     room.append((bound - sign * drift[kind][:, i]) / size)
-        return sparse.vstack(rows, format="csc"), np.concatenate(room)
+        bounds = np.concatenate(room)
+        slack = sparse.csc_matrix(-np.ones((len(bounds), 1)))
+        return sparse.hstack([sparse.vstack(rows), slack], format="csc"), bounds
 
 
 def _bounds(rig: Rig, i: int) -> tuple[tuple[float, float], ...]:

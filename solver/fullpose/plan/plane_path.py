@@ -15,10 +15,10 @@ from fullpose.limits import limit_table
 from fullpose.plan.plane_stages import FlightStage, flight_stages
 from fullpose.plan.plane_starts import first_states
 from fullpose.rig import Rig
-from fullpose.trajectory.base_curve import mended, smooth_base
+from fullpose.trajectory.base_curve import frames_of_base, mended, smooth_base
 from fullpose.trajectory.needles import needles
 from fullpose.trajectory.plane_motion import NO_NEEDLE, Controls, Plane, base_at
-from fullpose.trajectory.plane_search import States, base_path, empty_states, empty_table, expand, first_of
+from fullpose.trajectory.plane_search import States, empty_states, empty_table, expand, first_of
 from fullpose.trajectory.problem import Problem
 
 STEP = math.radians(12.0)  # [rad] the base goes by from rest in a stage at its full acceleration
@@ -118,9 +118,8 @@ def _traced(problem: Problem, stages: list[FlightStage], kept: list[States], kno
         if needle < NO_NEEDLE:
             pins.append((float(time[each.begin] + needle), base_at(angle, rate, second, third, needle)))
     fixed = pins if problem.start is None else [(float(time[0]), float(first[0])), *pins]
+    branch = kept[0].base[order[0], 2] * (-1.0) ** np.searchsorted([t for t, _ in pins], time)
     d = np.empty((len(time), 4))
-    base_path(
-        problem.rig.geometry.horizontal, problem.attitude, time, smooth_base(time, base, fixed, knot), first,
-        np.array([t for t, _ in pins] + [math.inf]), float(kept[0].base[order[0], 2]), d,
-    )  # fmt: skip
+    smooth = smooth_base(time, base, fixed, knot)
+    frames_of_base(problem.rig.geometry.horizontal, problem.attitude, smooth, branch, first, d)
     return d

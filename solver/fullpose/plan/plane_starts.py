@@ -27,19 +27,24 @@ def first_states(problem: Problem, found: Needles, acceleration: float, leading:
     """States at the first sample: the start asked for, or a grid of base angles; several rates of the base each."""
     rig, attitude = problem.rig, problem.attitude[0]
     fastest = min(float(rig.max_rate[0]), 2.0 * acceleration)
+    if problem.start is not None and problem.start_rate is not None:
+        return _states([(problem.start, float(problem.start_rate[0]))])
     poses = _first_poses(attitude, rig) if problem.start is None else problem.start[None]
     rates = np.linspace(-fastest, fastest, RATES)
     rows = [(pose, rate) for pose in poses for rate in rates]
     rows += [(pose, rate) for pose in poses for rate in _led_rates(problem, pose, leading, fastest)]
-    if problem.start_rate is not None and problem.start is not None:
-        rows = [(problem.start, float(problem.start_rate[0]))]
-    elif problem.start is not None:
+    if problem.start is not None:
         rows += [(problem.start, rate) for rate in _toward(problem, found, float(problem.start[0]), fastest)]
     else:
         rows += [
             (pose, rate) for angle, rate in _lines(problem, found, rates, fastest)
             for pose in _poses_at(attitude, rig, angle)
         ]  # fmt: skip
+    return _states(rows)
+
+
+def _states(rows: list[tuple[Array, float]]) -> States:
+    """States of (pose (4,) [rad], rate of the base [rad/s])."""
     states = empty_states(len(rows))
     for k, (pose, rate) in enumerate(rows):
         states.base[k] = pose[0], rate, 1.0 if math.cos(pose[2]) >= 0.0 else -1.0

@@ -5,8 +5,10 @@ from scipy import sparse
 from scipy.interpolate import BSpline
 from scipy.sparse.linalg import spsolve
 
+from fullpose._jit import kernel
 from fullpose._typing import Array
-from fullpose.charts import TURN
+from fullpose.charts import TURN, base_chart, turn_to
+from fullpose.trajectory.clamped_spline import clamped_basis
 from fullpose.trajectory.curve import closest_all
 from fullpose.trajectory.needles import CLEAR, Needles
 from fullpose.trajectory.problem import Problem
@@ -19,10 +21,7 @@ SIDE = 4  # samples on either side of a needle that those beside it are taken fr
 
 def smooth_base(time: Array, base: Array, pins: list[tuple[float, float]], knot: float) -> Array:
     """The quintic spline next to base (n,) [rad] that runs exactly through the pins, (time, angle) each."""
-    pieces = max(1, round(float(time[-1] - time[0]) / knot))
-    inner = np.linspace(time[0], time[-1], pieces + 1)
-    knots = np.r_[[time[0]] * DEGREE, inner, [time[-1]] * DEGREE]
-    rows: Matrix = BSpline.design_matrix(time, knots, DEGREE)
+    knots, rows = clamped_basis(time, knot, DEGREE)
     count = rows.shape[1]
     matrix: Matrix = rows.T @ rows + RIGID * sparse.identity(count)
     right = rows.T @ base
@@ -32,6 +31,19 @@ def smooth_base(time: Array, base: Array, pins: list[tuple[float, float]], knot:
         right = np.r_[right, [angle for _, angle in pins]]
     coefficients: Array = spsolve(sparse.csc_matrix(matrix), right)
     return np.asarray(rows @ coefficients[:count])
+
+
+@kernel
+def frames_of_base(horizontal: bool, attitude: Array, base: Array, branch: Array, first: Array, d: Array) -> None:
+    """d (n, 4) [rad] <- the frames of a base path (n,) [rad] with the sign of cos d3 (n,), continuous.
+
+    attitude (n, 3, 3); first (4,) [rad], whose turns the first sample takes.
+    """
+    near = first
+    for k in range(base.shape[0]):
+        base_chart(horizontal, attitude[k], base[k], branch[k], d[k])
+        turn_to(d[k], d[k, 0], near[1], near[2], near[3])
+        near = d[k]
 
 
 def mended(problem: Problem, found: Needles, d: Array) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._typing import Array
+from fullpose.charts import vertical_views
 
 DEGREE, REACH = 7, 4  # of the local fit, and how many samples on either side it goes through
 TOUCH = 3e-6  # a pitch whose extremum comes as near to zero as this touches it
@@ -27,16 +28,9 @@ class Needles:
     base: Array
 
 
-def vertical_rows(attitude: Array, horizontal: bool) -> Array:
-    """(V00, V01, V02) of attitudes (n, 3, 3), as the vertical rig sees them. (n, 3)"""
-    if horizontal:
-        return np.stack([attitude[:, 0, 0], attitude[:, 0, 2], -attitude[:, 0, 1]], axis=1)
-    return np.ascontiguousarray(attitude[:, 0, :])
-
-
 def needles(time: Array, attitude: Array, horizontal: bool) -> Needles:
     """The needles of a flight: time (n,) [s], attitude (n, 3, 3)."""
-    rows = vertical_rows(attitude, horizontal)
+    rows = vertical_views(attitude, horizontal)[:, 0]
     if len(time) < 2 * REACH + 1:
         return Needles(np.empty(0), np.empty(0))
     found: list[tuple[float, float]] = []

@@ -212,23 +212,3 @@ def expand(plane: Plane, stage: Stage, states: States, controls: Controls, table
 def empty_table() -> Table:
     """A table for `expand` to use again and again."""
     return Table(np.empty(CELLS, np.int64), np.empty(CELLS, np.int64), empty_states(FULL))
-
-
-@kernel
-def base_path(
-    horizontal: bool, attitude: Array, time: Array, base: Array, first: Array, flips: Array, branch: float, d: Array
-) -> None:  # fmt: skip
-    """d (n, 4) [rad] <- the frames of a base path (n,) [rad], in the turns next to first (4,) [rad].
-
-    The branch changes at flips (m,) [s], increasing, the last beyond the end.
-    """
-    sign = branch
-    j = 0
-    near = first
-    for k in range(time.shape[0]):
-        while time[k] > flips[j]:
-            sign = -sign
-            j += 1
-        base_chart(horizontal, attitude[k], base[k], sign, d[k])
-        turn_to(d[k], d[k, 0], near[1], near[2], near[3])
-        near = d[k]
