@@ -237,15 +237,20 @@ def test_a_list_reads_no_more_records_than_it_has_time_for(tmp_path: Path, monke
 
 
 def test_a_run_can_be_pinned_and_deleted(server: LiveServer, run: str) -> None:
-    assert server.http.get(f"/runs/{run}").json()["pinned"] is False
-    assert server.http.put(f"/runs/{run}/pin").status_code == 204
-    assert server.http.get("/runs").json()[0]["pinned"] is True
-    refused = server.http.delete(f"/runs/{run}")
+    runs = server.settings.data_dir / "runs"
+    own = runs / "20261122T030405-vertical-4-000008.mcap"  # the module's run is that of other tests too, in any order
+    own.write_bytes((runs / f"{run}.mcap").read_bytes())
+    mine = f"/runs/{own.stem}"
+    assert server.http.get(mine).json()["pinned"] is False
+    assert server.http.put(f"{mine}/pin").status_code == 204
+    assert [line["pinned"] for line in server.http.get("/runs").json()] == [False, True]
+    refused = server.http.delete(mine)
     assert (refused.status_code, refused.json()["type"]) == (409, "urn:fullpose:problem:in-use")
-    assert server.http.delete(f"/runs/{run}/pin").status_code == 204
-    assert server.http.delete(f"/runs/{run}").status_code == 204
-    assert server.http.get(f"/runs/{run}").status_code == 404
-    assert server.http.delete(f"/runs/{run}").status_code == 404
+    assert server.http.delete(f"{mine}/pin").status_code == 204
+    assert server.http.delete(mine).status_code == 204
+    assert server.http.get(mine).status_code == 404
+    assert server.http.delete(mine).status_code == 404
+    assert not own.exists()
 
 
 def test_runs_come_in_pages(tmp_path: Path) -> None:
