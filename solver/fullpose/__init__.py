@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from fullpose.scenarios import SCENARIOS
     from fullpose.solution import Solution
     from fullpose.solve import solve
+    from fullpose.trajectory.plane_map import plane_map
     from fullpose.verify import verify
 
 _HOMES = {
@@ -48,6 +49,7 @@ _HOMES = {
     "scenarios": ("SCENARIOS",),
     "solution": ("Solution",),
     "solve": ("solve",),
+    "trajectory.plane_map": ("plane_map",),
     "verify": ("verify",),
 }  # fmt: skip
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
@@ -77,6 +79,7 @@ __all__ = [
     "method_names",
     "method_options",
     "plan",
+    "plane_map",
     "quaternion_from_dcm",
     "quaternion_from_euler",
     "quaternion_from_ned",

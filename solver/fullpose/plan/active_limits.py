@@ -4,11 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._typing import Array, Codes, Integers
-from fullpose.bounds import ACCELERATION, CODES_PER_FRAME, EXACT, POSITION, RATE, limited_code
+from fullpose.bounds import CODES_PER_FRAME, EXACT, POSITION, limited_code
 from fullpose.rig import Rig
 from fullpose.trajectory.curve import LOCKED
+from fullpose.trajectory.limit_shares import limit_shares
 from fullpose.trajectory.linearisation import POSITION_UNIT
-from fullpose.verify import attitude_errors, differences, payload_attitudes
+from fullpose.verify import attitude_errors, payload_attitudes
 
 CHUNK = 1 << 16  # samples looked at together
 AT_LIMIT = 0.02  # share of a limit, or of `POSITION_UNIT` before a stop, within which it holds the frame
@@ -60,7 +61,8 @@ def _active(time: Array, angles: Array, rig: Rig) -> NDArray[np.bool_]:
     for _ in range(2):
         for begin in range(0, n, CHUNK):
             end, wide = min(n, begin + CHUNK), max(0, begin - 1)
-            left = _left(time[wide : end + 1], angles[wide : end + 1], rig)[begin - wide : end - wide]
+            left = limit_shares(time[wide : end + 1], angles[wide : end + 1], rig, POSITION_UNIT)
+            left = left[begin - wide : end - wide]
             left[:, ~has] = np.inf
             active[begin:end] = left <= within
             closest = min(closest, float(left.min()))
@@ -70,19 +72,6 @@ def _active(time: Array, angles: Array, rig: Rig) -> NDArray[np.bool_]:
         if not np.isfinite(closest):
             break
     return np.broadcast_to(has, active.shape)
-
-
-def _left(time: Array, angles: Array, rig: Rig) -> Array:
-    """What is left of each limit (n, 4, 3), as a share of it; inf where there is none or no difference shows it."""
-    left = np.full((len(time), 4, CODES_PER_FRAME), np.inf)
-    left[:, :, POSITION] = np.minimum(rig.position_max - angles, angles - rig.position_min) / POSITION_UNIT
-    if len(time) > 1:
-        rate, acceleration = differences(time, angles)
-        spare = 1.0 - np.abs(rate) / rig.max_rate
-        left[1:, :, RATE] = spare
-        left[:-1, :, RATE] = np.minimum(left[:-1, :, RATE], spare)
-        left[1:-1, :, ACCELERATION] = 1.0 - np.abs(acceleration) / rig.max_acceleration
-    return left
 
 
 def _nearest(places: Integers, samples: Integers) -> Integers:
