@@ -16,6 +16,7 @@ import numpy as np
 
 from fullpose.rig import Rig
 from fullpose_server.formats.rig_file import read_rig
+from fullpose_server.runtime.contract.hung import recorder_ended
 from fullpose_server.runtime.contract.rig_paths import RigPaths
 from fullpose_server.runtime.contract.shared_memory import Shared
 from fullpose_server.runtime.contract.telemetry import Flag, Samples
@@ -217,6 +218,7 @@ class Laboratory:
 
         Returns the newest sequence in each; `spoiled` is a record that was damaged on purpose.
         """
+        until(self._told)
         newest = {}
         for path, size in self.records().items():
             if path == spoiled or before.get(path) == size:
@@ -232,6 +234,15 @@ class Laboratory:
                 self._inside_ranges(rows)
                 newest[path] = int(rows["seq"][-1])
         return newest
+
+    def _told(self) -> bool:
+        """Whether the recorder has taken up all that it was told: one that was killed is replaced first."""
+        shared = self.shared()
+        if shared is None:
+            return True
+        header = shared.header
+        told = int(header["recorder_event"][0]) >= int(header["event_head"][0])
+        return told and not recorder_ended(header) and not bytes(header["recorder_run"][0])
 
     def _inside_ranges(self, rows: Samples) -> None:
         enabled = (rows["flags"] & Flag.ENABLED) != 0

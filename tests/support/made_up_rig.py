@@ -1,5 +1,6 @@
 """One rig's whole loop on a made-up clock: the simulated table, no process, no socket, no sleep."""
 
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -51,10 +52,15 @@ class Link:
 
 
 class Recorder:
-    """One that lives."""
+    """One that lives, until its process is said to have ended; the next is this test's own."""
+
+    pid = os.getpid()
 
     def revive(self) -> int | None:
-        return None
+        if self.pid == os.getpid():
+            return None
+        self.pid = os.getpid()
+        return self.pid
 
 
 def level(k: int, t: float) -> bytes:
@@ -75,7 +81,8 @@ class MadeUpRig:
         self.drive = SimulatedDrive(config.rig, config.rate_hz, options or SimulatedOptions())
         live = LiveSource(config.rig, config.live, 1.0 / config.rate_hz, (self.link,), lambda: seconds(self.clock))
         self.parts = assemble(config, self.drive, self.shared, live, self.clock)
-        leisure = Leisure(Recorder(), self.parts.log, self.shared.header, config.exit_idle_s, seconds(self.clock))
+        self.recorder = Recorder()
+        leisure = Leisure(self.recorder, self.parts.log, self.shared.header, config.exit_idle_s, seconds(self.clock))
         self.loop = ControlLoop(self.parts, self._serve, leisure)
         self.period_ns = round(1e9 / config.rate_hz)
         self.server_heard = self.owner_heard = self.source_heard = True
@@ -151,6 +158,7 @@ class MadeUpRig:
         self.clock.now += self.period_ns * (1 + self.missed)
         header = self.shared.header
         header["recorder_beat_ns"] = self.clock.now
+        header["recorder_pid"] = self.recorder.pid
         if self.server_heard:
             header["server_beat_ns"] = self.clock.now
         if self.owner_heard and self.epoch and self.parts.state.ticks % 50 == 0:

@@ -32,7 +32,12 @@ def recorder_lost(header: NDArray[Any], now_ns: int) -> bool:
     silent_ns = now_ns - int(header["recorder_beat_ns"][0])
     if silent_ns < _RECORDER_SILENT_NS:
         return False
-    return silent_ns > _RECORDER_LATE_NS or _state_of(int(header["recorder_pid"][0])) in _ENDED
+    return silent_ns > _RECORDER_LATE_NS or recorder_ended(header)
+
+
+def recorder_ended(header: NDArray[Any]) -> bool:
+    """Whether the recorder's process is gone or held by the system: known at once, where silence takes its time."""
+    return _state_of(int(header["recorder_pid"][0])) in _ENDED
 
 
 def suspended(pid: int) -> bool:

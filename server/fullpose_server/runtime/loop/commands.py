@@ -9,6 +9,7 @@ from typing import Protocol, TypeAlias
 
 from fullpose_server.drives.base import DriveError
 from fullpose_server.runtime.contract import messages
+from fullpose_server.runtime.contract.hung import recorder_ended
 from fullpose_server.runtime.contract.messages import Op
 from fullpose_server.runtime.live.provenance import digest_of
 from fullpose_server.runtime.loop import orders
@@ -26,6 +27,7 @@ from fullpose_server.session.run_end import Ending, RunEnd
 from fullpose_server.session.states import Command, State
 
 Given: TypeAlias = GivenOf[Load, PointMove]
+_RECORDER_SILENT_S = 2.0  # a recorder that has not been heard for longer: no arming
 _ESTOP = "estop"  # code of its alarm
 _AT_ONCE = (Command.STOP, Command.ESTOP)  # need neither lease nor arguments
 
@@ -209,8 +211,11 @@ class CommandHandler:
 
     def _ready_to_arm(self, request: messages.Request, now: float) -> Given:
         p = self._parts
-        silent_s = now - int(p.shared.header["recorder_beat_ns"][0]) / 1e9
-        orders.check_record(p.config.runs, p.config.min_free_mb, silent_s)
+        header = p.shared.header
+        silent_s = now - int(header["recorder_beat_ns"][0]) / 1e9
+        # One that was killed a moment ago has been heard a moment ago: the run would go without its record.
+        recorder = silent_s <= _RECORDER_SILENT_S and not recorder_ended(header)
+        orders.check_record(p.config.runs, p.config.min_free_mb, recorder=recorder)
         pair = orders.asked_pair(request.args, p.machine.binding)
         p.machine.check_pair(pair)
         orders.check_rig(request.args, p.config.rig)

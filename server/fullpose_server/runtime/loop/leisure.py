@@ -10,6 +10,7 @@ from fullpose_server.runtime.loop.event_log import EventLog
 from fullpose_server.session.states import State
 
 _COLLECT_S = 10.0
+_REVIVE_S = 0.5
 
 
 class Recorder(Protocol):
@@ -30,7 +31,7 @@ class Leisure:
         self._log = log
         self._header = header
         self._exit_idle_s = exit_idle_s
-        self._collected = 0.0
+        self._collected = self._looked = 0.0
         self._idle_since = now
         self.unneeded = False  # at rest, and no server for long: the process may end
 
@@ -42,11 +43,20 @@ class Leisure:
         elif now - self._idle_since > self._exit_idle_s:
             self._log.add("exit", why=f"at rest, and no server for {self._exit_idle_s:g} s")
             self.unneeded = True
-        if not resting or now - self._collected <= _COLLECT_S:
+        if not resting:
             return False
+        revived = now - self._looked > _REVIVE_S and self._revived(now)
+        if now - self._collected <= _COLLECT_S:
+            return revived
         self._collected = now
         gc.collect()
+        return True
+
+    def _revived(self, now: float) -> bool:
+        """What was flown without it is still in the ring, for a while: it is wanted soon."""
+        self._looked = now
         pid = self._recorder.revive()
-        if pid is not None:
-            self._log.add("recorder_restarted", pid=pid)
+        if pid is None:
+            return False
+        self._log.add("recorder_restarted", pid=pid)
         return True

@@ -132,9 +132,9 @@ def asked_pair(args: dict[str, Any], bound: Binding | None) -> Binding | None:
     )
 
 
-def check_record(runs: Path, min_free_mb: float, recorder_silent_s: float) -> None:
-    """Raise `OrderError` where a run could not be recorded."""
-    if recorder_silent_s > 2.0:
+def check_record(runs: Path, min_free_mb: float, *, recorder: bool) -> None:
+    """Raise `OrderError` where a run could not be recorded; `recorder`: whether there is one, and it runs."""
+    if not recorder:
         raise OrderError(
             "no_record", "the recorder does not run: it is started anew while the rig is at rest, try again"
         )
