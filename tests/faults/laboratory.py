@@ -67,8 +67,9 @@ class Flown:
 class Laboratory:
     """The server's process on one port and one data folder, started anew as often as it is killed."""
 
-    def __init__(self, data: Path) -> None:
+    def __init__(self, data: Path, **env: str) -> None:
         self.data = data
+        self.env = {"FULLPOSE_RIG_RATE_HZ": str(RATE_HZ)} | env
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             self.port: int = free.getsockname()[1]
@@ -100,9 +101,7 @@ class Laboratory:
         """Start the server where none runs, and wait until it answers."""
         if self.process is None or self.process.poll() is not None:
             self._reaped()
-            self.process = start(
-                "serve", "--port", self.port, "--data-dir", self.data, FULLPOSE_RIG_RATE_HZ=str(RATE_HZ)
-            )
+            self.process = start("serve", "--port", self.port, "--data-dir", self.data, **self.env)
             assert self.process.stdout is not None
             self.process.stdout.readline()
         until(self.healthy, every_s=0.1)
@@ -129,12 +128,15 @@ class Laboratory:
         self.process.kill()
         self.process.wait(timeout=60)
 
-    def gate(self) -> int | None:
-        """The stop gate's process."""
+    def gates(self) -> list[int]:
+        """The stop gate's process, and the one in reserve: the older first."""
         assert self.process is not None
         children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text("utf-8").split()
-        named = (pid for pid in children if "gate.process" in Path(f"/proc/{pid}/cmdline").read_text("utf-8"))
-        return next(map(int, named), None)
+        return [int(pid) for pid in children if "gate.process" in Path(f"/proc/{pid}/cmdline").read_text("utf-8")]
+
+    def gate(self) -> int | None:
+        """The one that serves; None while there is none."""
+        return next(iter(self.gates()), None)
 
     def shared(self) -> Shared | None:
         """The rig's memory; None where no process runs for it."""

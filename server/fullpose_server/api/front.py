@@ -11,4 +11,6 @@ class FrontStatus:
 
     def faults(self) -> list[str]:
         """What is wrong with it; nothing while all is well."""
-        return [] if self.down_since is None else ["the stop gate has ended and is being started anew"]
+        if self.down_since is None:
+            return []
+        return ["the stop gate has ended: the server stands in for it until another has begun"]

@@ -80,7 +80,7 @@ async def _run(settings: Settings, listener: socket.socket, url: str, ready: Rea
             beside.cancel()
             results = await asyncio.gather(beside, return_exceptions=True)
     finally:
-        await (asyncio.to_thread(gate.end) if keeper is None else keeper.close())
+        await (gate.end() if keeper is None else keeper.close())
     for result in results:
         if isinstance(result, Exception):
             raise result

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import logging
+import os
 import socket
 import subprocess
 import sys
@@ -13,7 +14,10 @@ from dataclasses import dataclass
 from fullpose_server.api.deps import Services
 from fullpose_server.api.problems import MEDIA_TYPE, ApiError
 from fullpose_server.gate import messages
+from fullpose_server.gate.beat import Beat
+from fullpose_server.gate.hanging import end_if_it_hangs
 from fullpose_server.gate.served import Connections
+from fullpose_server.gate.stand_in import StandIn
 from fullpose_server.gate.waker import keep_awake
 from fullpose_server.logs import LogSettings
 from fullpose_server.people.admitted import Admitted
@@ -21,7 +25,7 @@ from fullpose_server.processes import START_S
 from fullpose_server.runtime.supervisor.running import RunningProcess
 
 RETRY_S = 0.5
-SILENT_S = 5.0  # a gate that tells nothing for so long serves nobody: it tells at least every `gate.process.SWEEP_S`
+SILENT_S = 5.0  # a gate that tells nothing for so long serves nobody: it tells at least every `gate.gate.SWEEP_S`
 SPARE_AFTER_S = 5.0  # the one in reserve is made when this one has begun: they would take the processor from each other
 _AT_ONCE = 64  # messages; then the event loop has its turn
 _END_S = 5.0
@@ -34,6 +38,7 @@ class GateProcess:
 
     process: "subprocess.Popen[bytes]"
     link: socket.socket
+    beat: Beat
     log: LogSettings
     proxies: tuple[str, ...]
 
@@ -41,22 +46,37 @@ class GateProcess:
     def spawn(cls, listener: socket.socket, log: LogSettings, proxies: tuple[str, ...] = ()) -> "GateProcess":
         """Start one: it gets ready, and accepts from when it is told what it may stop and who may."""
         ours, theirs = messages.link()
-        with theirs:
+        beat, memory = Beat.made()
+        with theirs, os.fdopen(memory, "rb"):
             named = [word for each in proxies for word in ("--proxy", each)]
-            numbers = [str(listener.fileno()), str(theirs.fileno())]
+            given = {"--listener": listener.fileno(), "--link": theirs.fileno(), "--beat": memory}
             command = [sys.executable, "-m", "fullpose_server.gate.process"]
+            command += [word for name, number in given.items() for word in (name, str(number))]
             process = subprocess.Popen(
-                [*command, "--listener", numbers[0], "--link", numbers[1], *named, *log.arguments()],
-                pass_fds=(listener.fileno(), theirs.fileno()),
+                [*command, *named, *log.arguments()],
+                pass_fds=tuple(given.values()),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
             )
         keep_awake(process.pid, "the stop gate")
-        return cls(process, ours, log, proxies)
+        end_if_it_hangs(process.pid, beat)
+        return cls(process, ours, beat, log, proxies)
 
-    def end(self) -> None:
+    def another(self, listener: socket.socket) -> "GateProcess":
+        """As this one was started."""
+        return GateProcess.spawn(listener, self.log, self.proxies)
+
+    @property
+    def ready(self) -> bool:
+        """Whether its event loop runs: it takes over at once."""
+        return self.beat.last_ns > 0 and self.process.poll() is None
+
+    async def end(self) -> None:
         """It ends when its link does; one that does not is killed."""
         self.link.close()
+        await asyncio.to_thread(self._reap)
+
+    def _reap(self) -> None:
         try:
             self.process.wait(_END_S)
         except subprocess.TimeoutExpired:
@@ -67,8 +87,8 @@ class GateProcess:
 class Keeper:
     """Of one server's gate, from construction until `close`; at most `most` connections are served at once.
 
-    Where the gate ends, another that has been got ready takes its place at once. Everything belongs to the event loop's
-    thread.
+    Where the gate ends, another that has been got ready takes its place at once; where there is none, the server itself
+    until one is. Everything belongs to the event loop's thread.
     """
 
     def __init__(
@@ -88,9 +108,10 @@ class Keeper:
         self._status = services.front
         self._loop = asyncio.get_running_loop()
         self._ending = False
-        self._gate = gate
+        self._newest = gate  # of which others are spawned
+        self._gate: GateProcess | StandIn = gate
         self._spare: GateProcess | None = None
-        self._past: list[GateProcess] = []  # that are to be ended
+        self._past: list[GateProcess | StandIn] = []  # that are to be ended
         self._heard = self._since = time.monotonic()
         self._begun = False  # it has told something
         self._untold: deque[messages.ToGate] = deque()
@@ -108,11 +129,11 @@ class Keeper:
         """End the gate."""
         self._watch.cancel()
         await asyncio.gather(self._watch, return_exceptions=True)
-        self._loop.remove_reader(self._gate.link)
         self._loop.remove_writer(self._gate.link)
-        self._listener.close()
         for gate in [self._gate, *filter(None, [self._spare]), *self._past]:
-            await asyncio.to_thread(gate.end)
+            self._loop.remove_reader(gate.link)
+            await gate.end()
+        self._listener.close()
 
     # --- the gate's life ---
 
@@ -133,38 +154,49 @@ class Keeper:
             await asyncio.sleep(RETRY_S)
             patience_s = SILENT_S if self._begun else START_S
             before, silent = silent, time.monotonic() - self._heard > patience_s
-            if before and silent and self._status.down_since is None:
+            if before and silent and isinstance(self._gate, GateProcess):
                 self._lost(f"it has told nothing for {patience_s:g} s")
-            if self._status.down_since is not None:
-                self._replace(self._spawned())
             while self._past:
-                await asyncio.to_thread(self._past.pop().end)
-            if self._spare is not None and self._spare.process.poll() is not None:
-                self._past.append(self._spare)
-                self._spare = None
-            elif self._spare is None and self._begun and time.monotonic() - self._since > SPARE_AFTER_S:
-                self._spare = self._spawned()
+                past = self._past.pop()
+                self._loop.remove_reader(past.link)
+                await past.end()
+            self._have_a_spare()
 
-    def _spawned(self) -> GateProcess:
-        return GateProcess.spawn(self._listener, self._gate.log, self._gate.proxies)
+    def _have_a_spare(self) -> None:
+        alone = isinstance(self._gate, StandIn)
+        if self._spare is not None and self._spare.process.poll() is not None:
+            self._past.append(self._spare)
+            self._spare = None
+        elif self._spare is None:
+            if alone or (self._begun and time.monotonic() - self._since > SPARE_AFTER_S):
+                self._spare = self._newest = self._newest.another(self._listener)
+        elif alone and self._spare.ready:
+            spare, self._spare = self._spare, None
+            self._replace(spare)
 
-    def _replace(self, gate: GateProcess) -> None:
-        self._past.append(self._gate)
-        self._gate = gate
-        self._status.down_since = None
+    def _replace(self, gate: GateProcess | StandIn) -> None:
+        past, self._gate = self._gate, gate
+        self._past.append(past)
+        self._loop.remove_writer(past.link)
+        if isinstance(past, StandIn):
+            past.retire()  # and is heard until its end
+        self._status.down_since = None if isinstance(gate, GateProcess) else time.time()
         self._begin()
 
     def _lost(self, why: str) -> None:
-        if self._status.down_since is None:
-            log.error("the stop gate, process %d, is replaced: %s", self._gate.process.pid, why)
-            self._status.down_since = time.time()
-            self._loop.remove_reader(self._gate.link)
-            self._loop.remove_writer(self._gate.link)
-            with contextlib.suppress(ProcessLookupError):
-                self._gate.process.kill()
-            spare, self._spare = self._spare, None
-            if spare is not None:
-                self._replace(spare)
+        gate = self._gate
+        if isinstance(gate, StandIn):
+            return
+        log.error("the stop gate, process %d, is replaced: %s", gate.process.pid, why)
+        self._loop.remove_reader(gate.link)
+        with contextlib.suppress(ProcessLookupError):
+            gate.process.kill()
+        spare = self._spare
+        if spare is None or not spare.ready:
+            self._replace(StandIn(self._listener, gate.proxies))
+        else:
+            self._spare = None
+            self._replace(spare)
 
     def _changed(self, rig: str, process: RunningProcess | None) -> None:
         if process is None:
@@ -183,8 +215,6 @@ class Keeper:
 
     def _flush(self) -> None:
         """Tell what is to be told, as far as the gate takes it; later the rest."""
-        if self._status.down_since is not None:
-            return  # a new one is told all of it
         link = self._gate.link
         try:
             while self._untold:
@@ -199,7 +229,7 @@ class Keeper:
 
     # --- what it says ---
 
-    def _hear(self, gate: GateProcess) -> None:
+    def _hear(self, gate: GateProcess | StandIn) -> None:
         for _ in range(_AT_ONCE):
             try:
                 message = messages.for_server(gate.link)
@@ -210,7 +240,8 @@ class Keeper:
                 continue
             except OSError:
                 message = None
-            self._heard, self._begun = time.monotonic(), True
+            if gate is self._gate:
+                self._heard, self._begun = time.monotonic(), True
             match message:
                 case messages.Passed():
                     self._serve(message)
@@ -219,7 +250,9 @@ class Keeper:
                 case messages.Alive():
                     pass
                 case None:
-                    self._lost("it has ended")
+                    self._loop.remove_reader(gate.link)
+                    if gate is self._gate:
+                        self._lost("it has ended")
                     return
 
     def _serve(self, passed: messages.Passed) -> None:

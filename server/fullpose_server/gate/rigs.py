@@ -73,6 +73,11 @@ class Rigs:
         if process is not None:
             process.close()
 
+    def close(self) -> None:
+        """Look at none any more."""
+        for rig in list(self._running):
+            self.left(rig)
+
     def stop(self, rig: str, command: Command, who: str, address: str | None) -> Coroutine[Any, Any, messages.Reply]:
         """Stop or E-stop: the order stands when this returns; the coroutine, to be awaited, waits for the reply."""
         process = self._running.get(rig)

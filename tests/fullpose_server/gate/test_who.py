@@ -20,6 +20,7 @@ from fullpose_server.api.deps import Services
 from fullpose_server.api.front import FrontStatus
 from fullpose_server.api.problems import ApiError
 from fullpose_server.gate import messages
+from fullpose_server.gate.beat import Beat
 from fullpose_server.gate.keeper import GateProcess, Keeper
 from fullpose_server.gate.served import Connections
 from fullpose_server.gate.who import Who
@@ -87,9 +88,10 @@ def test_a_gate_is_told_of_more_people_than_its_link_takes_at_once() -> None:
     async def told() -> Who:
         ours, theirs = messages.link()
         ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 300_000)
-        gate = GateProcess(
-            cast("subprocess.Popen[bytes]", _Nobody()), ours, LogSettings(LogFormat.TEXT, LogLevel.WARNING), ()
-        )
+        beat, memory = Beat.made()
+        os.close(memory)
+        log = LogSettings(LogFormat.TEXT, LogLevel.WARNING)
+        gate = GateProcess(cast("subprocess.Popen[bytes]", _Nobody()), ours, beat, log, ())
         running = SimpleNamespace(watch=lambda _tell: None, all=list)
         tells: list[Callable[[Admitted], None]] = []
         services = SimpleNamespace(
