@@ -158,6 +158,7 @@ async def measure(attack: str, times: int, root: Path, over: Sequence[str] = WAY
         memory.close()
         print(row(f"{attack}: a viewer's gap", [1e3 * gap for gap in gaps.found]), flush=True)
         result = summary(found, gaps, memory)
+        gaps.close()
         ways.close()
         await host.close(stop_rig=False)
     return result

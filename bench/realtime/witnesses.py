@@ -1,35 +1,63 @@
-"""What is watched beside a measurement: a normal viewer's gaps between frames, and the memory of a server."""
+"""What is watched beside a measurement: a normal viewer's gaps between frames, and the memory of a server.
 
+`python -m bench.realtime.witnesses --port P --rig R` is the viewer, a process of its own: what is measured is the
+server. As a thread of the bench it waited for that one's interpreter, which a busy machine puts aside as it likes.
+"""
+
+import argparse
 import contextlib
+import struct
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
 
 from bench.realtime.rig_load import Viewer
+from fullpose_server.gate.system import SERVER, before_others
 
 _EVERY_S = 0.5
+_GAP = struct.Struct("d")
 
 
 class Gaps:
-    """A normal viewer, in a thread: the gaps between its frames [s]."""
+    """A normal viewer: the gaps between its frames [s], as they come."""
 
     def __init__(self, port: int, rig: str) -> None:
-        self._viewer = Viewer(port, rig)
-        self._viewer.link.setblocking(True)
+        command = [sys.executable, "-m", "bench.realtime.witnesses", "--port", str(port), "--rig", rig]
+        self._viewer = subprocess.Popen(command, stdout=subprocess.PIPE)
         self.found: list[float] = []
         self.ended = False  # the server has let go of it
-        threading.Thread(target=self._read, daemon=True).start()
+        self._reading = threading.Thread(target=self._read, daemon=True)
+        self._reading.start()
+
+    def close(self) -> None:
+        """Watch no more."""
+        self._viewer.terminate()
+        self._viewer.wait()
+        self._reading.join()
 
     def _read(self) -> None:
-        last, frames = time.monotonic(), self._viewer.frames
-        with contextlib.suppress(OSError):
-            while self._viewer.read():
-                if self._viewer.frames == frames:
-                    continue  # a part of one
-                frames, now = self._viewer.frames, time.monotonic()
-                self.found.append(now - last)
-                last = now
+        assert self._viewer.stdout is not None
+        with self._viewer.stdout as told:
+            while len(data := told.read(_GAP.size)) == _GAP.size:
+                self.found += _GAP.unpack(data)
         self.ended = True
+
+
+def _watch(port: int, rig: str) -> None:
+    viewer = Viewer(port, rig)
+    viewer.link.setblocking(True)
+    before_others(SERVER)
+    last, frames = time.monotonic(), viewer.frames
+    with contextlib.suppress(OSError):
+        while viewer.read():
+            if viewer.frames == frames:
+                continue  # a part of one
+            frames, now = viewer.frames, time.monotonic()
+            sys.stdout.buffer.write(_GAP.pack(now - last))
+            sys.stdout.buffer.flush()
+            last = now
 
 
 class Memory:
@@ -80,3 +108,11 @@ def _resident_mb(pid: int) -> float:
     except OSError:
         return 0.0
     return sum(int(line.split()[1]) for line in lines if line.startswith("VmRSS:")) / 1024.0
+
+
+if __name__ == "__main__":
+    _arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    _arguments.add_argument("--port", type=int, required=True)
+    _arguments.add_argument("--rig", required=True)
+    _given = _arguments.parse_args()
+    _watch(_given.port, _given.rig)

@@ -2,6 +2,7 @@
 
 import contextlib
 import ctypes
+import os
 import signal
 from pathlib import Path
 
@@ -20,6 +21,18 @@ def call_itself(title: str) -> None:
         begin, end = int(fields[45]), int(fields[46])
         if 0 < begin < end:
             ctypes.memmove(begin, title.encode()[: end - begin - 1].ljust(end - begin, b"\0"), end - begin)
+
+
+def after_others(niceness: int) -> None:
+    """Have the calling process wait for the processor where the server or another program wants it.
+
+    A nice value alone says that to the processes of the same session. One that leads a session of its own is weighed as
+    a group against the others' (sched(7), autogroup): there the group is what has to be nice.
+    """
+    os.nice(niceness)
+    if os.getsid(0) == os.getpid():
+        with contextlib.suppress(OSError):  # a kernel without groups, or a container that may not write there
+            Path("/proc/self/autogroup").write_text(str(niceness), "ascii")
 
 
 def memory_kills(counters: Path = _COUNTERS) -> int:

@@ -61,6 +61,7 @@ class Pages:
         self._server = server
         self._contexts: list[BrowserContext] = []
         self.wrong: list[str] = []
+        self.elsewhere: list[str] = []  # addresses that pages may go to beside the server's
 
     def open(self, *, viewport: ViewportSize = DESK, touch: bool = False, scene: bool = False) -> Page:
         """A page of a fresh profile. Scenes are drawn only where asked for: software rendering takes a core each."""
@@ -82,7 +83,7 @@ class Pages:
             context.close()
 
     def _ours(self, url: str) -> bool:
-        return url.startswith((f"{self._server.url}/", "data:", "blob:"))
+        return url.startswith((f"{self._server.url}/", "data:", "blob:", *self.elsewhere))
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ class Stock:
 
 
 @contextmanager
-def serving(data: Path) -> Iterator[Server]:
+def serving(data: Path, **settings: str) -> Iterator[Server]:
     """`fullpose serve` on a free port with this data folder; its rigs are stopped at the end."""
     log = (data / "server.log").open("w")
     command = [*FULLPOSE, "serve", "--port", "0", "--data-dir", str(data)]
@@ -103,7 +104,7 @@ def serving(data: Path) -> Iterator[Server]:
     patient = {"FULLPOSE_LIVE_DELAY_MS": "20", "FULLPOSE_LIVE_EXTRAPOLATE_MS": "1000"}
     patient["FULLPOSE_RIG_RATE_HZ"] = "250"  # each loop of 1 kHz takes a sixth of a core, and five come to be connected
     process = subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **patient}
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=log, text=True, env={**os.environ, **patient, **settings}
     )
     try:
         assert process.stdout is not None

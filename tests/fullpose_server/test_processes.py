@@ -34,3 +34,25 @@ def test_a_process_says_what_it_is(title: str) -> None:
     shown, _, path = ran.stdout.rstrip("\n").partition("|")
     assert shown.rstrip("\0") == title
     assert path  # nothing else was written over
+
+
+AFTER_OTHERS = """
+import os
+from pathlib import Path
+from fullpose_server.processes import after_others
+before = Path("/proc/self/autogroup").read_text().split()
+after_others(7)
+print(os.nice(0), before[-1], Path("/proc/self/autogroup").read_text().split()[-1])
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/autogroup").exists(), reason="a kernel without groups of sessions")
+@pytest.mark.parametrize("alone", [True, False])
+def test_a_process_with_a_session_of_its_own_makes_that_nice_as_well(*, alone: bool) -> None:
+    """A session that it shares is not its own to change: the server's would wait too."""
+    done = subprocess.run(
+        [sys.executable, "-c", AFTER_OTHERS], capture_output=True, text=True, check=True, start_new_session=alone
+    )
+    nice, before, after = done.stdout.split()
+    assert int(nice) >= 7
+    assert after == ("7" if alone else before)

@@ -18,6 +18,7 @@ from typing import IO, Any
 from fullpose.errors import SolverError
 from fullpose_server.errors import ServerError, job_code
 from fullpose_server.planning.job import Kind
+from fullpose_server.processes import after_others
 
 Progress = Callable[[str, int, int], None]  # phase, done, total
 Maker = Callable[[Any, Progress], Mapping[str, Any]]
@@ -45,12 +46,12 @@ def _failure(error: Exception) -> dict[str, Any]:
 
 
 def serve(
-    load: Callable[[], Mapping[str, Maker]], failure: Callable[[Exception], dict[str, Any]], niceness: int = 5
+    load: Callable[[], Mapping[str, Maker]], failure: Callable[[Exception], dict[str, Any]], niceness: int = 10
 ) -> None:
     """Answer requests until stdin ends: each by the maker of its kind, or by what its failure is in words."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # whatever prints must not write into the protocol
-    os.nice(niceness)  # a rig's loop and the server come first
+    after_others(niceness)  # a rig's loop and the server come first
     makers = load()
     _say(answers, {"ready": True})
     for line in iter(_requests().get, None):
