@@ -15,6 +15,7 @@ from fullpose_server.api.hashing import Hashing
 from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
+from fullpose_server.api.planes import Planes
 from fullpose_server.api.problems import ApiError
 from fullpose_server.api.provider import Provider
 from fullpose_server.api.stopping import is_name, who_stops
@@ -82,6 +83,7 @@ class Services:
     uploads: Path  # where what is being received goes
     attempts: Attempts = field(default_factory=Attempts)
     hashing: Hashing = field(default_factory=Hashing)
+    planes: Planes = field(default_factory=Planes)
     front: FrontStatus = field(default_factory=FrontStatus)
     frames: dict[str, FrameSource] = field(default_factory=dict)
     live_sources: set[str] = field(default_factory=set)  # rigs that have one connected

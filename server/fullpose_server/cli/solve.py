@@ -83,7 +83,7 @@ def solve(asked: SolveArguments) -> None:
     if asked.plot is not None:
         from fullpose_server.pages.plot_page import plot_page
 
-        write_text(asked.plot, plot_page(solution, made, flight.name))
+        write_text(asked.plot, plot_page(solution, told.attitude, made, flight.name))
     read.tell()
     typer.echo(_summary(made))
     why, advised = why_infeasible(made), advice(made)

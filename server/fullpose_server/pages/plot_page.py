@@ -1,4 +1,5 @@
-"""A solve as one HTML page that needs nothing else: frames against their limits, the error on a log axis."""
+"""A solve as one HTML page that needs nothing else: frames against their limits, the error on a log axis, the plane of
+time and base angle."""
 
 import html
 import json
@@ -9,17 +10,19 @@ from typing import Any
 import numpy as np
 
 from fullpose._typing import Array
+from fullpose.errors import SolverError
 from fullpose.rig import FRAMES
 from fullpose.solution import Solution
 from fullpose_server.formats.degrees import written_degrees
+from fullpose_server.formats.plane_document import plane_document
 from fullpose_server.formats.report import why_infeasible
 from fullpose_server.pages.thin import thin
 
 POINTS = 4000
 
 
-def plot_page(solution: Solution, report: dict[str, Any], name: str) -> str:
-    """The page; `name` is the flight's."""
+def plot_page(solution: Solution, attitude: Array, report: dict[str, Any], name: str) -> str:
+    """The page; `name` and attitude (n, 3, 3) are those of the flight that was solved."""
     angles = np.rad2deg(solution.angles)
     rates, accelerations = _derivatives(solution.time, angles)
     error = np.rad2deg(solution.error)
@@ -42,7 +45,14 @@ def plot_page(solution: Solution, report: dict[str, Any], name: str) -> str:
         },
     ]
     frames = [FRAMES[index] for index in solution.rig.geometry.frames]
-    data = json.dumps({"time_s": solution.time[rows].tolist(), "frames": frames, "plots": plots})
+    data = json.dumps(
+        {
+            "time_s": solution.time[rows].tolist(),
+            "frames": frames,
+            "plots": plots,
+            "plane": _plane(solution, attitude),
+        }
+    )
     page = resources.files("fullpose_server.pages").joinpath("plot_page.html").read_text(encoding="utf-8")
     title = html.escape(f"{name} on {report['rig']}, {report['method']}")
     # The data goes last: a name that holds a placeholder's text must not be replaced in turn.
@@ -51,6 +61,14 @@ def plot_page(solution: Solution, report: dict[str, Any], name: str) -> str:
         .replace("__SUMMARY__", _summary(report))
         .replace("__DATA__", data.replace("<", "\\u003c"))
     )
+
+
+def _plane(solution: Solution, attitude: Array) -> dict[str, Any]:
+    """The plane of time and base angle, or why there is none."""
+    try:
+        return plane_document(solution.time, attitude, solution.angles, solution.rig)
+    except SolverError as refusal:
+        return {"none": str(refusal)}
 
 
 def _summary(report: dict[str, Any]) -> str:

@@ -401,6 +401,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/plans/{plan}/plane": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Plan Plane
+         * @description The plane of time and base angle of a plan: the share of the limits that a path can leave at most, the needles,
+         *     the plan's own path and where it is tightest. Of a plan that is not feasible the map is the flight's.
+         */
+        get: operations["plan_plane_api_v1_plans__plan__plane_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/plans/{plan}/remedies": {
         parameters: {
             query?: never;
@@ -2538,6 +2559,21 @@ export interface components {
             time_s: number;
         };
         /**
+         * NeedleOut
+         * @description A point that paths run exactly through, changing the side of cos d3, or pass by the half width at least.
+         */
+        NeedleOut: {
+            /**
+             * Base Deg
+             * @description Half a turn on is another
+             */
+            base_deg: number;
+            /** Half Width Deg */
+            half_width_deg: number;
+            /** Time S */
+            time_s: number;
+        };
+        /**
          * NoArgs
          * @description A command without arguments.
          */
@@ -2786,6 +2822,66 @@ export interface components {
              * @enum {string}
              */
             type: "ping";
+        };
+        /**
+         * PlaneOut
+         * @description What a path can leave of the limits at most, over time (from the flight's begin) and base angle.
+         *
+         *     `margin` and `limits` are base64 of a byte a cell: first the side cos d3 >= 0, then the other; of each time after
+         *     time, of each base angle after base angle, evenly from the first to the last of `base_deg`.
+         */
+        PlaneOut: {
+            /** Base Deg */
+            base_deg: [
+                number,
+                number
+            ];
+            /**
+             * Limits
+             * @description Lower half: the limit that leaves no more, 1 + 3 * frame + limit, of base, outer, middle, inner and position, rate, acceleration from 0; 0: none; upper: the one that holds it
+             */
+            limits: string;
+            /**
+             * Margin
+             * @description Signed, per cent rounded down; negative: no path passes there inside the limits
+             */
+            margin: string;
+            /**
+             * Needles
+             * @description The widest, by time
+             */
+            needles: components["schemas"]["NeedleOut"][];
+            /** Needles Left Out */
+            needles_left_out: number;
+            path: components["schemas"]["PlanePathOut"];
+            /** Rows */
+            rows: number;
+            tightest: components["schemas"]["TightestOut"];
+            /** Time S */
+            time_s: number[];
+        };
+        /**
+         * PlanePathOut
+         * @description The plan at the times of the map.
+         */
+        PlanePathOut: {
+            /** Base Deg */
+            base_deg: number[];
+            /**
+             * Limit
+             * @description 1 + 3 * frame + limit, of base, outer, middle, inner and position, rate, acceleration from 0; 0: none
+             */
+            limit: number[];
+            /**
+             * Margin
+             * @description Least share left about there of any limit, accelerations too [per cent]
+             */
+            margin: number[];
+            /**
+             * Side
+             * @description 0 where cos d3 >= 0, else 1
+             */
+            side: number[];
         };
         /**
          * PlanIn
@@ -4247,6 +4343,25 @@ export interface components {
             wall_ns: number[];
             /** Write Us */
             write_us: (number | null)[];
+        };
+        /**
+         * TightestOut
+         * @description Where the plan leaves least of a limit.
+         */
+        TightestOut: {
+            /** Frame */
+            frame: ("base" | "outer" | "middle" | "inner") | null;
+            /** Limit */
+            limit: ("position" | "rate" | "acceleration") | null;
+            /**
+             * Margin
+             * @description Per cent, rounded down; negative beyond the limit
+             */
+            margin: number;
+            /** Sentence */
+            sentence: string;
+            /** Time S */
+            time_s: number;
         };
         /**
          * TimeMap
@@ -6670,6 +6785,103 @@ export interface operations {
             };
             /** @description Validation Error */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    plan_plane_api_v1_plans__plan__plane_get: {
+        parameters: {
+            query?: {
+                columns?: number;
+                rows?: number;
+            };
+            header?: never;
+            path: {
+                plan: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlaneOut"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The plan is not done, its rig has three axes, or its rig is another by now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many at once: try again later */
+            429: {
                 headers: {
                     [name: string]: unknown;
                 };

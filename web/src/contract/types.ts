@@ -45,6 +45,8 @@ export type Peak = Schemas["PeakOut"];
 export type Person = Schemas["PersonOut"];
 export type Plan = Schemas["PlanOut"];
 export type PlanMargin = Schemas["MarginOut"];
+/** The plane of time and base angle of a plan. */
+export type Plane = Schemas["PlaneOut"];
 export type PlanSamples = Schemas["PlanSamples"];
 export type Problem = Schemas["Problem"];
 export type RemedyKind = Schemas["RemedyIn"]["kind"];

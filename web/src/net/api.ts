@@ -66,6 +66,7 @@ export const api = {
   plan: (plan: string) => request("get", "/api/v1/plans/{plan}", { plan }, READ),
   planSamples: (plan: string, points = 1200) =>
     request("get", "/api/v1/plans/{plan}/samples", { plan }, { ...READ, query: { points } }),
+  planPlane: (plan: string) => request("get", "/api/v1/plans/{plan}/plane", { plan }, READ),
   /** `tolerance_deg`: null for the flight as it is. */
   createPlan: (trajectory: string, rig: string, method: string, tolerance_deg: number | null) =>
     request("post", "/api/v1/plans", {}, { ...READ, body: { trajectory, rig, method, options: {}, tolerance_deg } }),

@@ -21,7 +21,7 @@ from fullpose_server.settings import Settings
 PROCESSES = 2
 WAITING = 32  # requests, beyond those in work
 PREWARM_S = 600.0  # that compiling may take on a fresh installation
-_AFTER_PREWARM = frozenset({Work.DIAGNOSE, Work.TOLERANCE})  # wait until what they need is compiled
+_AFTER_PREWARM = frozenset({Work.DIAGNOSE, Work.PLANE, Work.TOLERANCE})  # wait until what they need is compiled
 log = logging.getLogger(__name__)
 
 

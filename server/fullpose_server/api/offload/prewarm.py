@@ -1,4 +1,4 @@
-"""Compile (or load from the cache) the kernels of a diagnosis and of a tolerance before somebody waits for them.
+"""Compile (or load from the cache) the kernels of a diagnosis, a tolerance and a map before somebody waits for them.
 
 On a fresh installation that takes longer than a request may: the first to look at a flight would be refused.
 """
@@ -9,6 +9,7 @@ from fullpose.attitude import dcm_from_quaternion
 from fullpose.recorded import effect_of, smooth
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
+from fullpose.trajectory.plane_map import plane_map
 from fullpose_server.formats.diagnosis import diagnosis_document
 
 SAMPLES = 400
@@ -28,6 +29,7 @@ def prewarm() -> None:
         diagnosis_document(time_s, q, rig)
         for tolerance in TOLERANCES:
             effect_of(time_s, q, smooth(time_s, dcm_from_quaternion(q), tolerance))
+    plane_map(time_s, dcm_from_quaternion(q), rig, columns=2, rows=2)
 
 
 def recordings() -> list[tuple[np.ndarray, np.ndarray]]:

@@ -39,6 +39,7 @@ class Work(StrEnum):
     SOLVE = "solve"
     TOLERANCE = "tolerance"
     DIAGNOSE = "diagnose"
+    PLANE = "plane"
     PREWARM = "prewarm"  # nothing is made: what a diagnosis needs is compiled, or loaded
 
 
@@ -110,6 +111,18 @@ class DiagnoseRequest(Request):
     answer: str
     rigs: str
     rig: str | None
+
+
+@dataclass(frozen=True)
+class PlaneRequest(Request):
+    """A stored plan: its folder, where the answer goes, where the rigs are, which one, and the size of the map."""
+
+    folder: str
+    answer: str
+    rigs: str
+    rig: str
+    columns: int
+    rows: int
 
 
 def _read_file(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
@@ -214,6 +227,19 @@ def _diagnose(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
     return {}
 
 
+def _plane(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
+    # Numba and SciPy, as for a solve.
+    from fullpose_server.api.offload.plane import plan_plane
+    from fullpose_server.api.schemas.plane import PlaneOut
+    from fullpose_server.formats.rig_file import RigStore
+
+    asked = PlaneRequest(**values)
+    rig = RigStore(Path(asked.rigs)).get(asked.rig).rig
+    document = plan_plane(Path(asked.folder), rig, asked.columns, asked.rows)
+    Path(asked.answer).write_text(PlaneOut.model_validate(document).model_dump_json(), encoding="utf-8")
+    return {}
+
+
 def _prewarm(_values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
     from fullpose_server.api.offload.prewarm import prewarm
 
@@ -228,6 +254,7 @@ MAKERS: dict[str, Maker] = {
     Work.SOLVE: _solve,
     Work.TOLERANCE: _tolerance,
     Work.DIAGNOSE: _diagnose,
+    Work.PLANE: _plane,
     Work.PREWARM: _prewarm,
 }
 
