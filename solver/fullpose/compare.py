@@ -45,7 +45,7 @@ class Figures:
     rms_error: float  # [rad]
     max_matrix_error: float
     violations: Integers  # (4, 3) samples beyond each limit
-    peaks: Array  # (4, 3) largest magnitudes [rad, rad/s, rad/s^2]
+    peaks: Array  # (4, 4) largest magnitudes [rad, rad/s, rad/s^2, rad/s^3]
     total_variation: Array  # (4,) [rad] the way each frame turned
     failures: tuple[Failure, ...]  # the most samples first
 
@@ -65,7 +65,7 @@ class Row:
 
 def figures(solution: Solution, verification: Verification) -> Figures:
     """The figures of a solution, `verification` being that of its angles against its rig and flight."""
-    violations = np.zeros((4, 3), np.int64)
+    violations = np.zeros((4, len(LIMITS)), np.int64)
     for violation in verification.violations:
         violations[FRAMES.index(violation.frame), LIMITS.index(violation.limit)] += violation.samples
     return Figures(

@@ -3,9 +3,10 @@
 Each frame's rate goes to zero along a curve with a plateau of acceleration in the middle, reached and left as a cosine,
 and the path's own acceleration dies out beside it, so that angles, rates and accelerations are continuous. Each frame
 takes the shortest time, but a tenth of a second where there is room for it, for which its sampled lead, the joint with
-the path included, keeps inside its limits; where its stop is too near, the acceleration rises and falls more quickly,
-which needs little more than the braking distance. A frame that needs less time than the others rests first. One
-without an acceleration limit that has no room for any of that stops at once. A lead-in is a lead-out in reversed time.
+the path included, keeps inside its limits, that of jerk among them; where its stop is too near, the acceleration rises
+and falls more quickly, which needs little more than the braking distance. A frame that needs less time than the others
+rests first. One without an acceleration limit that has no room for any of that stops at once. A lead-in is a lead-out
+in reversed time.
 """
 
 import math
@@ -14,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fullpose._typing import Array
-from fullpose.bounds import ACCELERATION, MET, POSITION, RATE
+from fullpose.bounds import ACCELERATION, JERK, MET, POSITION, RATE
 from fullpose.rig import FRAMES, LIMITS, Rig
+from fullpose.verify import jerks
 
 GENTLE, LONGEST = 0.1, 120.0  # [s]
 LONGER = 1.04  # times the time tried before
@@ -128,6 +130,10 @@ def _outside(end: _End, path: Array, added: int, rig: Rig, frame: int) -> int | 
     a = np.diff(v) / np.r_[0.5 * (t[2:] - t[:-2]), np.full(added, h)]
     if np.abs(a).max() > rig.max_acceleration[frame] * (1.0 + MET):
         return ACCELERATION
+    if np.isfinite(rig.max_jerk[frame]):
+        times = np.r_[t, t[-1] + h * np.arange(1, added + 1)]
+        if np.abs(jerks(times, a[:, None])).max() > rig.max_jerk[frame] * (1.0 + MET):
+            return JERK
     if np.abs(v).max() > rig.max_rate[frame] * (1.0 + MET):
         return RATE
     if path.max() > rig.position_max[frame] or path.min() < rig.position_min[frame]:

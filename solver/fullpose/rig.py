@@ -5,7 +5,7 @@ base column is held at zero, so that every array in this package is (n, 4).
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property
 from typing import Any
@@ -34,6 +34,7 @@ class Limit(StrEnum):
     POSITION = "position"
     RATE = "rate"
     ACCELERATION = "acceleration"
+    JERK = "jerk"
 
 
 FRAMES = tuple(Frame)
@@ -79,7 +80,7 @@ _AXES = {
 
 @dataclass(frozen=True)
 class FrameLimits:
-    """One frame's limits [rad, rad/s, rad/s^2]; infinity means no limit. Both positions infinite: continuous."""
+    """One frame's limits [rad, rad/s, rad/s^2, rad/s^3]; infinity: no limit. Both positions infinite: continuous."""
 
     min: float = -math.inf
     max: float = math.inf
@@ -87,6 +88,7 @@ class FrameLimits:
     max_acceleration: float = math.inf
     weight: float = 1.0
     home: float = 0.0
+    max_jerk: float = math.inf
 
     @property
     def continuous(self) -> bool:
@@ -115,7 +117,7 @@ class Rig:
                 raise RigError(f"frames.{name}", (frame.min, frame.max), "both of min and max, or neither")
             if not frame.min <= frame.home <= frame.max:
                 raise RigError(f"frames.{name}.home", frame.home, "a position inside the range")
-            for key in ("max_rate", "max_acceleration", "weight"):
+            for key in ("max_rate", "max_acceleration", "max_jerk", "weight"):
                 value = getattr(frame, key)
                 if not value > 0.0:
                     raise RigError(f"frames.{name}.{key}", value, "a number above zero")
@@ -148,6 +150,16 @@ class Rig:
         return self._column("max_acceleration", math.inf)
 
     @cached_property
+    def max_jerk(self) -> NDArray[np.float64]:
+        """(4,) [rad/s^3]; inf for no limit."""
+        return self._column("max_jerk", math.inf)
+
+    @property
+    def jerk_limited(self) -> bool:
+        """Whether any frame has a jerk limit."""
+        return bool(np.isfinite(self.max_jerk).any())
+
+    @cached_property
     def weight(self) -> NDArray[np.float64]:
         """Diagonal of W. (4,)"""
         return self._column("weight", 1.0)
@@ -166,6 +178,14 @@ class Rig:
 def _readonly(array: NDArray[Any]) -> NDArray[Any]:
     array.setflags(write=False)
     return array
+
+
+def without_jerk_limits(rig: Rig) -> Rig:
+    """The rig without its jerk limits; itself where it has none."""
+    if not rig.jerk_limited:
+        return rig
+    base, outer, middle, inner = (replace(frame, max_jerk=math.inf) for frame in rig.frames)
+    return replace(rig, frames=(base, outer, middle, inner))
 
 
 def builtin_rigs() -> dict[str, Rig]:

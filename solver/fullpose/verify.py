@@ -1,7 +1,7 @@
 """An independent check of frame angles: plain NumPy, no kernel of the solver. Angles [rad], one row a sample.
 
 Rates and accelerations are the samples' differences: v_k = (x_k - x_{k-1}) / (t_k - t_{k-1}),
-a_k = (v_{k+1} - v_k) / ((t_{k+1} - t_{k-1}) / 2).
+a_k = (v_{k+1} - v_k) / ((t_{k+1} - t_{k-1}) / 2). Jerks likewise: j_k = (a_k - a_{k-1}) / ((t_{k+1} - t_{k-2}) / 3).
 """
 
 from dataclasses import dataclass
@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fullpose._typing import Array
-from fullpose.bounds import POSITION_TOLERANCE, TOLERANCE
+from fullpose.bounds import JERK_ROUNDING, POSITION_TOLERANCE, TOLERANCE
 from fullpose.errors import InputError
 from fullpose.rig import FRAMES, LIMITS, Frame, Limit, Rig
 
 
 @dataclass(frozen=True)
 class Violation:
-    """A limit exceeded: when [s], which frame, which limit, the value [rad, rad/s, rad/s^2].
+    """A limit exceeded: when [s], which frame, which limit, the value [rad, rad/s, rad/s^2, rad/s^3].
 
     One for each run of samples without a break, at its worst sample; `samples` is the run's length.
     """
@@ -31,7 +31,7 @@ class Violation:
 
 @dataclass(frozen=True)
 class Verification:
-    """What the angles do. `peaks` (4, 3): largest magnitude a frame of position, rate, acceleration."""
+    """What the angles do. `peaks` (4, 4): largest magnitude a frame of position, rate, acceleration, jerk."""
 
     max_error: float  # [rad] geodesic; nan where no attitude was given
     max_matrix_error: float  # largest entry of F - C; nan likewise
@@ -71,6 +71,16 @@ def differences(time: ArrayLike, angles: ArrayLike) -> tuple[Array, Array]:
     return rate, np.diff(rate, axis=0) / (0.5 * (t[2:] - t[:-2]))[:, None]
 
 
+def jerks(time: ArrayLike, acceleration: ArrayLike) -> Array:
+    """Jerks (n - 3, 4) [rad/s^3] of samples 2..n-2 at time (n,) [s], from the `differences` accelerations (n - 2, 4).
+
+    Six times the third divided difference: a mean of the third derivative over four samples, however they are spaced,
+    so that a curve whose jerk is inside a limit is inside it at every rate of sampling.
+    """
+    t, a = np.asarray(time, float), np.asarray(acceleration, float)
+    return np.asarray(np.diff(a, axis=0) / ((t[3:] - t[:-3]) / 3.0)[:, None])
+
+
 def verify(time: ArrayLike, angles: ArrayLike, rig: Rig, attitude: ArrayLike | None = None) -> Verification:
     """Check angles (n, 4) [rad] at time (n,) [s] against the rig's limits and the attitude (n, 3, 3).
 
@@ -91,12 +101,18 @@ def verify(time: ArrayLike, angles: ArrayLike, rig: Rig, attitude: ArrayLike | N
         error, matrix_error = attitude_errors(payload_attitudes(rig, x), C)
         max_error, max_matrix_error = float(error.max()), float(matrix_error.max())
 
-    peaks = np.zeros((4, 3))
+    jerk = jerks(t, acceleration) if len(t) > 3 else np.empty((0, 4))
+    peaks = np.zeros((4, 4))
     violations: list[Violation] = []
     for frame in rig.geometry.frames:
         limits = rig.frames[frame]
         for limit, (when, value) in enumerate(
-            ((t, x[:, frame]), (t[1:], rate[:, frame]), (t[1:-1], acceleration[:, frame]))
+            (
+                (t, x[:, frame]),
+                (t[1:], rate[:, frame]),
+                (t[1:-1], acceleration[:, frame]),
+                (t[2:-1], jerk[:, frame]),
+            )
         ):
             if not value.size:
                 continue
@@ -104,7 +120,10 @@ def verify(time: ArrayLike, angles: ArrayLike, rig: Rig, attitude: ArrayLike | N
             if limit == 0:
                 violation = np.maximum(limits.min - value, value - limits.max) - POSITION_TOLERANCE
             else:
-                violation = np.abs(value) - (limits.max_rate, limits.max_acceleration)[limit - 1] * (1.0 + TOLERANCE)
+                most = (limits.max_rate, limits.max_acceleration, limits.max_jerk)[limit - 1]
+                violation = np.abs(value) - most * (1.0 + TOLERANCE)
+                if limit == 3:  # the rounding of a position is no jerk
+                    violation -= JERK_ROUNDING * (1.0 + np.abs(x[2:-1, frame])) / ((t[3:] - t[:-3]) / 3.0) ** 3
             violations += _runs(when, value, violation, FRAMES[frame], LIMITS[limit])
     violations.sort(key=lambda violation: violation.time)
     return Verification(max_error, max_matrix_error, peaks, tuple(violations))

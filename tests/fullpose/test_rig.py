@@ -23,6 +23,8 @@ def rig_with(frame: FrameLimits) -> Rig:
         (FrameLimits(max_rate=0.0), "frames.base.max_rate"),
         (FrameLimits(max_rate=math.nan), "frames.base.max_rate"),
         (FrameLimits(max_acceleration=-1.0), "frames.base.max_acceleration"),
+        (FrameLimits(max_jerk=0.0), "frames.base.max_jerk"),
+        (FrameLimits(max_jerk=-1.0), "frames.base.max_jerk"),
         (FrameLimits(weight=math.inf), "frames.base.weight"),
     ],
 )

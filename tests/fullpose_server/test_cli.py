@@ -73,7 +73,9 @@ def test_solve_writes_angles_that_reproduce_the_flight(tmp_path: Path) -> None:
     told = {name: report["input"][name] for name in ("format", "profile", "convention", "warnings")}
     assert told == {"format": "csv", "profile": "fullpose", "convention": "nue", "warnings": []}
     assert set(report["peak"]) == {"base", "outer", "middle", "inner"}
-    assert set(report["peak"]["base"]) == {"position_deg", "rate_deg_s", "acceleration_deg_s2"}
+    assert set(report["peak"]["base"]) == {
+        "position_deg", "rate_deg_s", "acceleration_deg_s2", "jerk_deg_s3", "jerk_percent",
+    }  # fmt: skip
     assert {"method", "rig", "max_error_deg", "max_matrix_error", "iterations", "step_us", "solve_s"} <= set(report)
     assert np.abs(angles[:, 1]).max() == pytest.approx(report["peak"]["base"]["position_deg"], rel=1e-12)
 

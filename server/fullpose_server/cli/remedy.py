@@ -33,7 +33,7 @@ class RemedyArguments(ReadingArguments):
     out: Annotated[Path, typer.Option(help=f"Angles of the changed flight; {OUT_KINDS}.")]
     report: Annotated[Path | None, typer.Option(help="Write the report as JSON, with what was changed.")] = None
     frame: Annotated[str | None, typer.Option(help="relax: of this frame alone.")] = None
-    limit: Annotated[str | None, typer.Option(help="relax: of position, rate or acceleration alone.")] = None
+    limit: Annotated[str | None, typer.Option(help="relax: of position, rate, acceleration or jerk alone.")] = None
     start: StartPose = None
     tolerance: ToleranceDeg = None
 

@@ -67,7 +67,9 @@ def _table(entry: "RigEntry") -> str:
     for index in entry.rig.geometry.frames:
         frame = entry.rig.frames[index]
         span = "continuous" if frame.continuous else f"{deg(frame.min)}..{deg(frame.max)} deg"
+        jerk = f" {deg(frame.max_jerk):>8} deg/s^3" if math.isfinite(frame.max_jerk) else ""
         lines.append(
             f"  {FRAMES[index]:<7} {span:<18} {deg(frame.max_rate):>6} deg/s {deg(frame.max_acceleration):>7} deg/s^2"
+            f"{jerk}"
         )
     return "\n".join(lines)

@@ -110,8 +110,11 @@ class PlanFolder:
 
 def rig_hash(rig: Rig) -> str:
     """sha-256 of everything about a rig that a plan depends on: geometry, limits, weights and home [rad]."""
+    # A key that came later counts only where it is given: plans of before stay those of their rigs.
     limits = {
-        name: {key: repr(float(value)) for key, value in asdict(frame).items()}
+        name: {
+            key: repr(float(value)) for key, value in asdict(frame).items() if key != "max_jerk" or math.isfinite(value)
+        }
         for name, frame in zip(FRAMES, rig.frames, strict=True)
     }
     text = json.dumps({"geometry": str(rig.geometry), "frames": limits}, sort_keys=True)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from fullpose.plan.verdict import Verdict
     from fullpose.solution import Blocking
 
-UNITS = {"position": "deg", "rate": "deg/s", "acceleration": "deg/s^2"}
+UNITS = {"position": "deg", "rate": "deg/s", "acceleration": "deg/s^2", "jerk": "deg/s^3"}
 
 
 def reason_report(verdict: "Verdict") -> dict[str, Any]:

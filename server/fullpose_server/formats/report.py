@@ -48,6 +48,8 @@ def make_report(solution: Solution, verification: Verification) -> dict[str, Any
                 "position_deg": math.degrees(verification.peaks[index, 0]),
                 "rate_deg_s": math.degrees(verification.peaks[index, 1]),
                 "acceleration_deg_s2": math.degrees(verification.peaks[index, 2]),
+                "jerk_deg_s3": math.degrees(verification.peaks[index, 3]),
+                "jerk_percent": _percent(verification.peaks[index, 3], solution.rig.frames[index].max_jerk),
             }
             for index in solution.rig.geometry.frames
         },
@@ -115,7 +117,10 @@ def verdict_report(plan: "Plan") -> dict[str, Any]:
 
 def margins_report(margins: "Margins", rig: Rig) -> dict[str, Any]:
     """The smallest distance to each limit and to the singularity, and when; null where there is no limit."""
-    kinds = {"position_deg": margins.position, "rate_deg_s": margins.rate, "acceleration_deg_s2": margins.acceleration}
+    kinds = {
+        "position_deg": margins.position, "rate_deg_s": margins.rate, "acceleration_deg_s2": margins.acceleration,
+        "jerk_deg_s3": margins.jerk,
+    }  # fmt: skip
 
     def margin(value: float, when: float) -> dict[str, float] | None:
         return {"value": value, "time_s": when} if math.isfinite(value) else None
@@ -185,6 +190,11 @@ def _limited_by(solution: Solution) -> list[dict[str, Any]]:
         if name := limited_name(int(code)):
             rows.append({"frame": name[0], "limit": name[1], "samples": int(count)})
     return rows
+
+
+def _percent(value: float, limit: float) -> float | None:
+    """Of a limit; null where there is none."""
+    return 100.0 * float(value) / limit if math.isfinite(limit) else None
 
 
 def _finite(value: float) -> float | None:

@@ -80,12 +80,13 @@ class FrameTable(Table):
     max_deg: Limit | None = None
     max_rate_deg_s: Limit | None = None
     max_acceleration_deg_s2: Limit | None = None
+    max_jerk_deg_s3: Limit | None = None
     weight: Limit = 1.0
     home_deg: Limit = 0.0
 
 
 # Key in the file -> field of `FrameLimits`; all in degrees but the weight.
-FRAME_KEYS = {key: re.sub(r"_deg(_s2?)?$", "", key) for key in FrameTable.model_fields}
+FRAME_KEYS = {key: re.sub(r"_deg(_s[23]?)?$", "", key) for key in FrameTable.model_fields}
 
 A_FRAME = Expected("a table")
 

@@ -19,7 +19,7 @@ from fullpose.bounds import POSITION_TOLERANCE, TOLERANCE
 from fullpose.compare import Row
 from fullpose.rig import FRAMES, Rig
 from fullpose.solution import Solution
-from fullpose.verify import differences
+from fullpose.verify import differences, jerks
 from fullpose_server.formats.degrees import written_degrees
 from fullpose_server.pages.compare_table import metrics_table
 from fullpose_server.pages.thin import thin
@@ -112,6 +112,8 @@ def beyond_limits(solution: Solution) -> NDArray[np.bool_]:
         rates, accelerations = differences(solution.time, angles)
         beyond[1:] |= (np.abs(rates) > rig.max_rate * (1.0 + TOLERANCE)).any(axis=1)
         beyond[1:-1] |= (np.abs(accelerations) > rig.max_acceleration * (1.0 + TOLERANCE)).any(axis=1)
+        if rig.jerk_limited and len(angles) > 3:
+            beyond[2:-1] |= (np.abs(jerks(solution.time, accelerations)) > rig.max_jerk * (1.0 + TOLERANCE)).any(axis=1)
     return beyond
 
 

@@ -159,7 +159,7 @@ def _changed(kind: RemedyKind, remedy: Remedy, rig: Rig, duration: float, smooth
         more = math.degrees(after.max - before.max)
         said = f"the {frame} frame's range widened from {old} to {new} deg, {more:.3g} deg more on each side"
     else:
-        held = math.degrees(before.max_rate if limit == "rate" else before.max_acceleration)
+        held = math.degrees(getattr(before, f"max_{limit}"))
         more = angle - held
         said = (
             f"the {frame} frame's {limit} limit raised from {held:.4g} to {angle:.4g} {UNITS[limit]}, by {more:.3g} "

@@ -22,7 +22,7 @@ from fullpose.kinematics import four_axis_pose, payload_attitude, rotate_back, r
 from fullpose.least_squares import LeastSquares, box_least_squares, squared_damping
 from fullpose.limits import ACCELERATION, HOME, MAX, MIN, approach_rate, inside
 from fullpose.methods.block import BlockKernel, BlockStepper
-from fullpose.methods.start_pose import require_fourth_axis, start_pose
+from fullpose.methods.start_pose import require_fourth_axis, require_no_jerk_limits, start_pose
 from fullpose.methods.state import Flight, hold_position, new_flight
 from fullpose.rig import Rig
 from fullpose.step import Programme, clamp, null_interval, quadratic_step
@@ -249,8 +249,9 @@ class LimitedStepper(BlockStepper):
 def flight_from(name: str, rig: Rig, near: Array | None, attitude: Array) -> Flight:
     """A flight at the exact pose for the attitude (3, 3) nearest to `near` (4,) [rad], or to home where None.
 
-    Raises `MethodError` where the rig has no fourth axis.
+    Raises `MethodError` where the rig has no fourth axis, or has jerk limits.
     """
     require_fourth_axis(name, rig)
+    require_no_jerk_limits(name, rig)
     pose, code = start_pose(rig, attitude, near)
     return new_flight(rig, pose, code, attitude)

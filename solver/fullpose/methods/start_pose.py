@@ -147,6 +147,14 @@ def require_fourth_axis(name: str, rig: Rig) -> None:
         raise MethodError(f"{name} needs the fourth axis; {rig.name} is {rig.geometry.value}: use three_axis")
 
 
+def require_no_jerk_limits(name: str, rig: Rig) -> None:
+    """Raises `MethodError` where the rig has jerk limits: the method `name` claims limits, and keeps none of jerk."""
+    if rig.jerk_limited:
+        raise MethodError(
+            f"{name} does not keep jerk limits, and {rig.name} has them: use plan, or a rig without max_jerk_deg_s3"
+        )
+
+
 def start_pose(rig: Rig, attitude: Array, near: Array | None) -> tuple[Array, int]:
     """The exact pose for `attitude` (3, 3) nearest to `near` (4,) [rad], or to the rig's home where None.
 

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._typing import Array, Codes, Integers
-from fullpose.bounds import CODES_PER_FRAME, EXACT, POSITION, limited_code
-from fullpose.rig import Rig
+from fullpose.bounds import CODES, EXACT, POSITION
+from fullpose.rig import LIMITS, Rig
 from fullpose.trajectory.curve import LOCKED
 from fullpose.trajectory.limit_shares import limit_shares
 from fullpose.trajectory.linearisation import POSITION_UNIT
@@ -23,7 +23,7 @@ def active_limits(
 
     A limit is active where the path angles (n, 4) [rad] comes within `AT_LIMIT` of it. Of those active at the sample
     nearest in time: the frame whose motion would take most of the attitude error away, a stop only where the frame
-    would have to go beyond it; of one frame's, position before rate before acceleration.
+    would have to go beyond it; of one frame's, position before rate before acceleration before jerk.
     """
     codes = np.full(len(time), EXACT, np.int16)
     lost = np.flatnonzero(missed)
@@ -35,33 +35,33 @@ def active_limits(
         part = slice(begin, begin + CHUNK)
         at, held = lost[part], nearest[part]
         descent = _descent(attitude[at], angles[at], rig)
-        gain = np.repeat(np.abs(descent)[:, :, None], CODES_PER_FRAME, axis=2)
+        gain = np.repeat(np.abs(descent)[:, :, None], len(LIMITS), axis=2)
         upper = rig.position_max - angles[held] < angles[held] - rig.position_min
         gain[:, :, POSITION] = np.maximum(0.0, np.where(upper, descent, -descent))
         gain[~active[held]] = -1.0
         best = np.argmax(gain.reshape(len(at), -1), axis=1)
-        codes[at] = limited_code(0, 0) + best
+        codes[at] = CODES[best]
     return codes
 
 
 def _active(time: Array, angles: Array, rig: Rig) -> NDArray[np.bool_]:
-    """The active limits (n, 4, 3), at least one in the flight.
+    """The active limits (n, 4, 4), at least one in the flight.
 
     Where none is: the one that the path comes closest to; else, of a path too short to show, any that the rig has.
     A frame that has no room to move counts only where the rig has no other limit: it holds every sample alike.
     """
-    has = np.isfinite(np.stack([rig.position_max, rig.max_rate, rig.max_acceleration], axis=1))
+    has = np.isfinite(np.stack([rig.position_max, rig.max_rate, rig.max_acceleration, rig.max_jerk], axis=1))
     has &= (rig.axes >= 0)[:, None]
     free = has.copy()
     free[:, POSITION] &= rig.position_max - rig.position_min >= LOCKED
     has = free if free.any() else has  # at least one: without a limit nothing keeps a rig from the attitude
     n = len(time)
-    active = np.zeros((n, 4, CODES_PER_FRAME), np.bool_)
+    active = np.zeros((n, 4, len(LIMITS)), np.bool_)
     closest, within = np.inf, AT_LIMIT
     for _ in range(2):
         for begin in range(0, n, CHUNK):
-            end, wide = min(n, begin + CHUNK), max(0, begin - 1)
-            left = limit_shares(time[wide : end + 1], angles[wide : end + 1], rig, POSITION_UNIT)
+            end, wide = min(n, begin + CHUNK), max(0, begin - 2)
+            left = limit_shares(time[wide : end + 2], angles[wide : end + 2], rig, POSITION_UNIT)
             left = left[begin - wide : end - wide]
             left[:, ~has] = np.inf
             active[begin:end] = left <= within

@@ -1,4 +1,4 @@
-"""Paths that are taken sample by sample: inside every limit, exact wherever that could be had."""
+"""Paths that are taken sample by sample: inside every limit but those of jerk, exact wherever that could be had."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,6 +7,7 @@ from fullpose._typing import Array
 from fullpose.methods import METHODS
 from fullpose.preview.flight import PreviewFlight
 from fullpose.preview.options import PreviewOptions
+from fullpose.rig import without_jerk_limits
 from fullpose.trajectory.problem import Problem
 
 # [s] known and [s] between two trajectories, of the previews
@@ -28,7 +29,11 @@ class Fallback:
     def exact(self) -> Array:
         """By the step method `exact`."""
         p, method = self.problem, METHODS["exact"]
-        return method.stepper(p.rig, method.options(), p.start, p.attitude[0]).block(p.time, p.attitude).angles
+        return (
+            method.stepper(without_jerk_limits(p.rig), method.options(), p.start, p.attitude[0])
+            .block(p.time, p.attitude)
+            .angles
+        )
 
     @cached_property
     def foreseen(self) -> tuple[Array, ...]:
@@ -37,5 +42,5 @@ class Fallback:
         if p.time[-1] - p.time[0] > FORESEEN:
             return ()
         every = (PreviewOptions(preview_s=known, replan_s=between) for known, between in FORESIGHTS)
-        flights = (PreviewFlight(p.rig, options, p.start, p.time, p.attitude) for options in every)
+        flights = (PreviewFlight(without_jerk_limits(p.rig), options, p.start, p.time, p.attitude) for options in every)
         return tuple(flight.block(p.time, p.attitude).angles for flight in flights)

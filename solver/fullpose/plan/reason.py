@@ -18,7 +18,7 @@ from fullpose.plan.held_frame import NO_POSE, held_frame
 from fullpose.plan.three_axis import three_axis_path
 from fullpose.rig import FRAMES, LIMITS, Frame, Limit, Rig
 from fullpose.trajectory.curve import LOCKED
-from fullpose.verify import differences, verify
+from fullpose.verify import differences, jerks, verify
 from fullpose.vocabulary import Consequence
 
 AT_LIMIT = 0.02  # share of a rate or acceleration limit within which a frame is on it
@@ -34,7 +34,7 @@ TOGETHER = 0.1  # [s] after the first limit that is exceeded: of those in it a s
 
 @dataclass(frozen=True)
 class Reached:
-    """A frame reaches a limit [rad, rad/s, rad/s^2]: the value with its sign, and the bound that it is at."""
+    """A frame reaches a limit [rad, rad/s, rad/s^2, rad/s^3]: the value with its sign, and the bound that it is at."""
 
     time: float
     frame: Frame
@@ -45,7 +45,7 @@ class Reached:
 
 @dataclass(frozen=True)
 class Needed:
-    """What the attitude would need of a frame then [rad, rad/s, rad/s^2], and the bound that this exceeds.
+    """What the attitude would need of a frame then [rad, rad/s, rad/s^2, rad/s^3], and the bound that this exceeds.
 
     Of a frame that would itself have to be elsewhere, `bound` is the angle that it has then.
     """
@@ -152,9 +152,10 @@ def _on_limit(stretch: _Stretch, frame: int, limit: int) -> Iterator[tuple[Reach
     else:
         if len(time) < 1 + limit:
             return
-        value = differences(time, stretch.angles)[limit - 1][:, frame]
-        when = time[1:] if limit == 1 else time[1:-1]
-        most = (rig.max_rate, rig.max_acceleration)[limit - 1][frame]
+        most = (rig.max_rate, rig.max_acceleration, rig.max_jerk)[limit - 1][frame]
+        rate, acceleration = differences(time, stretch.angles)
+        of = rate if limit == 1 else acceleration if limit == 2 else jerks(time, acceleration)
+        value, when = of[:, frame], (time[1:], time[1:-1], time[2:-1])[limit - 1]
         bound = np.copysign(most, value)
         on = np.isfinite(most) & (np.abs(value) >= (1.0 - AT_LIMIT) * most)
     for begin, end in _runs(when, np.flatnonzero(on)):
@@ -216,5 +217,7 @@ def _first(stretch: _Stretch, path: Array) -> Needed | None:
     if first.limit == Limit.POSITION:
         bound = rig.position_max[i] if first.value > rig.position_max[i] else rig.position_min[i]
     else:
-        bound = math.copysign((rig.max_rate if first.limit == Limit.RATE else rig.max_acceleration)[i], first.value)
+        bound = math.copysign(
+            (rig.max_rate, rig.max_acceleration, rig.max_jerk)[LIMITS.index(first.limit) - 1][i], first.value
+        )
     return Needed(first.time, first.frame, first.limit, first.value, float(bound))

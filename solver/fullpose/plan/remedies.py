@@ -149,6 +149,7 @@ def smallest_share(margins: Margins, rig: Rig) -> float:
             (margins.position[:, 0] / half)[half > LOCKED],
             (margins.rate[:, 0] / np.where(np.isfinite(rig.max_rate), rig.max_rate, 1.0)),
             (margins.acceleration[:, 0] / np.where(np.isfinite(rig.max_acceleration), rig.max_acceleration, 1.0)),
+            (margins.jerk[:, 0] / np.where(np.isfinite(rig.max_jerk), rig.max_jerk, 1.0)),
         ]
     )
     return float(shares.min())
@@ -160,10 +161,10 @@ def relax(
 ) -> list[Remedy]:  # fmt: skip
     """Which single limit, raised by how much, would make the flight feasible: the ones that would, least raise first.
 
-    frame, limit: of the rig's frames and `LIMITS`, to look at one alone; None: all. Rates and accelerations are raised
-    up to `LARGEST_RAISE` times, ranges widened on both sides up to a turn in all, to within 1 %. A flight that fits as
-    it is has one remedy, `NOTHING`; the list is empty where no single limit is enough. Raises `CancelledError` from
-    progress, `InputError` for names that are none.
+    frame, limit: of the rig's frames and `LIMITS`, to look at one alone; None: all. Rates, accelerations and jerks are
+    raised up to `LARGEST_RAISE` times, ranges widened on both sides up to a turn in all, to within 1 %. A flight that
+    fits as it is has one remedy, `NOTHING`; the list is empty where no single limit is enough. Raises `CancelledError`
+    from progress, `InputError` for names that are none.
     """
     present = [FRAMES[i] for i in rig.geometry.frames]
     if frame is not None and frame not in present:
@@ -206,7 +207,7 @@ def relax(
 
 
 def _limit_of(rig: Rig, frame: int, kind: int) -> float:
-    return float((rig.position_max, rig.max_rate, rig.max_acceleration)[kind][frame])
+    return float((rig.position_max, rig.max_rate, rig.max_acceleration, rig.max_jerk)[kind][frame])
 
 
 def tolerance(
@@ -229,8 +230,9 @@ def _limits(rig: Rig) -> Iterator[tuple[int, int]]:
             not rig.frames[i].continuous,
             math.isfinite(rig.frames[i].max_rate),
             math.isfinite(rig.frames[i].max_acceleration),
+            math.isfinite(rig.frames[i].max_jerk),
         )
-        for kind in range(3):
+        for kind in range(len(LIMITS)):
             if present[kind]:
                 yield i, kind
 
@@ -243,8 +245,10 @@ def raised(rig: Rig, frame: int, kind: int, share: float, largest: float = LARGE
         limits = replace(limits, min=limits.min - math.pi * share, max=limits.max + math.pi * share)
     elif kind == 1:
         limits = replace(limits, max_rate=limits.max_rate * factor)
-    else:
+    elif kind == 2:
         limits = replace(limits, max_acceleration=limits.max_acceleration * factor)
+    else:
+        limits = replace(limits, max_jerk=limits.max_jerk * factor)
     frames = list(rig.frames)
     frames[frame] = limits
     return replace(

@@ -11,7 +11,7 @@ from fullpose.plan.impossible import Beyond
 from fullpose.plan.reason import Reason
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Blocking
-from fullpose.verify import Violation, attitude_errors, differences, payload_attitudes, verify
+from fullpose.verify import Violation, attitude_errors, differences, jerks, payload_attitudes, verify
 from fullpose.vocabulary import Certainty, Decision
 
 CHUNK = 1 << 18  # samples looked at together, so that an hour needs no copies of itself
@@ -100,23 +100,24 @@ class Verdict:
 class Margins:
     """The smallest distance to each limit, (4, 2) a kind: value and time [s]; inf and nan where there is no limit.
 
-    Positions [rad], rates [rad/s], accelerations [rad/s^2]; negative outside. `singularity` is (value, time) of the
-    smallest `singularity_measure`.
+    Positions [rad], rates [rad/s], accelerations [rad/s^2], jerks [rad/s^3]; negative outside. `singularity` is
+    (value, time) of the smallest `singularity_measure`.
     """
 
     position: Array
     rate: Array
     acceleration: Array
+    jerk: Array
     singularity: tuple[float, float]
 
 
 def margins(time: Array, angles: Array, rig: Rig) -> Margins:
     """Margins of angles (n, 4) [rad] at time (n,) [s]."""
     n = len(time)
-    tables = [np.tile([math.inf, math.nan], (4, 1)) for _ in range(3)]
+    tables = [np.tile([math.inf, math.nan], (4, 1)) for _ in LIMITS]
     nearest = (math.inf, math.nan)
     for begin in range(0, n, CHUNK):
-        part = slice(begin, min(n, begin + CHUNK + 2))
+        part = slice(begin, min(n, begin + CHUNK + 3))
         t, x = time[part], angles[part]
         measure = singularity_measures(x)
         k = int(np.argmin(measure))
@@ -126,16 +127,18 @@ def margins(time: Array, angles: Array, rig: Rig) -> Margins:
         if len(t) > 1:
             rate, acceleration = differences(t, x)
             room += [rig.max_rate - np.abs(rate), rig.max_acceleration - np.abs(acceleration)]
+            if rig.jerk_limited and len(t) > 3:
+                room.append(rig.max_jerk - np.abs(jerks(t, acceleration)))
         for kind, values in enumerate(room):
             for i in rig.geometry.frames:
                 if not values.shape[0] or not np.isfinite(values[0, i]):
                     continue
                 k = int(np.argmin(values[:, i]))
                 if values[k, i] < tables[kind][i, 0]:
-                    tables[kind][i] = values[k, i], t[k + (1 if kind else 0)]
+                    tables[kind][i] = values[k, i], t[k + (0, 1, 1, 2)[kind]]
     for table in tables:
         table.setflags(write=False)
-    return Margins(tables[0], tables[1], tables[2], nearest)
+    return Margins(tables[0], tables[1], tables[2], tables[3], nearest)
 
 
 @dataclass(frozen=True)
@@ -191,7 +194,7 @@ def check(time: Array, attitude: Array, angles: Array, rig: Rig) -> Check:
         end = min(n, begin + CHUNK)
         F = payload_attitudes(rig, angles[begin:end])
         error[begin:end], matrix_error[begin:end] = attitude_errors(F, attitude[begin:end])
-        wide = slice(max(0, begin - 1), min(n, end + 1))
+        wide = slice(max(0, begin - 2), min(n, end + 2))
         inner = verify(time[wide], angles[wide], rig).violations
         violations += [v for v in inner if time[begin] <= v.time <= time[end - 1]]
     return Check(error, matrix_error, tuple(violations), between_samples(time, attitude, angles, rig))

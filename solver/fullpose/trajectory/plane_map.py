@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from fullpose._jit import kernel
 from fullpose._typing import Array, Codes, Integers
-from fullpose.bounds import POSITION, limited_name
+from fullpose.bounds import CODES, EXACT, POSITION, limited_name
 from fullpose.charts import TURN, vertical_views
 from fullpose.errors import InputError, MethodError
 from fullpose.flight import check_flight
@@ -135,13 +135,13 @@ def path_margin(time: Array, angles: Array, rig: Rig) -> PathMargin:
     unit = np.where(counted, 0.5 * spans, 1.0)
     margin, binding = np.empty(n), np.empty(n, np.int16)
     for begin in range(0, n, CHUNK):
-        end, wide = min(n, begin + CHUNK), max(0, begin - 1)
-        shares = limit_shares(time[wide : end + 1], angles[wide : end + 1], rig, unit)
+        end, wide = min(n, begin + CHUNK), max(0, begin - 2)
+        shares = limit_shares(time[wide : end + 2], angles[wide : end + 2], rig, unit)
         shares[:, ~counted, POSITION] = np.inf
         flat = shares[begin - wide : end - wide].reshape(end - begin, -1)
         least = np.argmin(flat, axis=1)
         margin[begin:end] = np.minimum(flat[np.arange(end - begin), least], 1.0)
-        binding[begin:end] = np.where(margin[begin:end] < 1.0, least + 1, 0)
+        binding[begin:end] = np.where(margin[begin:end] < 1.0, CODES[least], EXACT)
     return PathMargin(angles[:, 0].copy(), (np.cos(angles[:, 2]) < 0.0).astype(np.int64), margin, binding)
 
 

@@ -58,6 +58,8 @@ def test_no_key_no_limit(tmp_path: Path) -> None:
         ('name = "a"\ngeometry = "vertical-3"\n[frames.base]\nmax_deg = 1', "frames.base"),
         ('name = "a"\ngeometry = "vertical-4"\n[frames.base]\nmin_deg = 1', "frames.base.min_deg"),
         ('name = "a"\ngeometry = "vertical-4"\n[frames.base]\nmax_rate_deg_s = 0', "frames.base.max_rate_deg_s"),
+        ('name = "a"\ngeometry = "vertical-4"\n[frames.base]\nmax_jerk_deg_s3 = 0', "frames.base.max_jerk_deg_s3"),
+        ('name = "a"\ngeometry = "vertical-4"\n[frames.base]\nmax_jerk_deg_s3 = -1', "frames.base.max_jerk_deg_s3"),
         ('name = "a"\ngeometry = "vertical-4"\n[frames.base]\nmax_rate_deg_s = "5"', "frames.base.max_rate_deg_s"),
         ('name = "a"\ngeometry = "vertical-4"\n[frames.base]\nmax_rate_deg_s = nan', "frames.base.max_rate_deg_s"),
         ('name = "a"\ngeometry = "vertical-4"\n[payload]\nsize_m = [1, 2]', "payload.size_m"),

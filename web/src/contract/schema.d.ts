@@ -1272,7 +1272,7 @@ export interface components {
              * Limit
              * @enum {string}
              */
-            limit: "position" | "rate" | "acceleration";
+            limit: "position" | "rate" | "acceleration" | "jerk";
             /** Time S */
             time_s: number;
         };
@@ -1744,10 +1744,11 @@ export interface components {
         };
         /**
          * FrameMargins
-         * @description Null: no limit. deg, deg/s, deg/s^2.
+         * @description Null: no limit. deg, deg/s, deg/s^2, deg/s^3.
          */
         FrameMargins: {
             acceleration_deg_s2: components["schemas"]["MarginOut"] | null;
+            jerk_deg_s3?: components["schemas"]["MarginOut"] | null;
             position_deg: components["schemas"]["MarginOut"] | null;
             rate_deg_s: components["schemas"]["MarginOut"] | null;
         };
@@ -1762,6 +1763,8 @@ export interface components {
             max_acceleration_deg_s2: number | null;
             /** Max Deg */
             max_deg: number | null;
+            /** Max Jerk Deg S3 */
+            max_jerk_deg_s3: number | null;
             /** Max Rate Deg S */
             max_rate_deg_s: number | null;
             /** Min Deg */
@@ -2111,13 +2114,13 @@ export interface components {
              * Limit
              * @enum {string}
              */
-            limit: "position" | "rate" | "acceleration";
+            limit: "position" | "rate" | "acceleration" | "jerk";
             /** Sample */
             sample: number;
         };
         /**
          * LimitMetOut
-         * @description A frame and one of its limits: `value` against `bound`, in deg, deg/s or deg/s^2 by the limit.
+         * @description A frame and one of its limits: `value` against `bound`, in deg, deg/s, deg/s^2 or deg/s^3 by the limit.
          */
         LimitMetOut: {
             /** Bound */
@@ -2131,7 +2134,7 @@ export interface components {
              * Limit
              * @enum {string}
              */
-            limit: "position" | "rate" | "acceleration";
+            limit: "position" | "rate" | "acceleration" | "jerk";
             /** Time S */
             time_s: number;
             /** Value */
@@ -2778,6 +2781,16 @@ export interface components {
         PeakOut: {
             /** Acceleration Deg S2 */
             acceleration_deg_s2: number;
+            /**
+             * Jerk Deg S3
+             * @description Of the samples' third differences
+             */
+            jerk_deg_s3?: number | null;
+            /**
+             * Jerk Percent
+             * @description Of the frame's limit; null: it has none
+             */
+            jerk_percent?: number | null;
             /** Position Deg */
             position_deg: number;
             /** Rate Deg S */
@@ -3030,6 +3043,10 @@ export interface components {
             error_deg: (number | null)[];
             /** Id */
             id: string;
+            /** Jerks Deg S3 */
+            jerks_deg_s3: {
+                [key: string]: number[];
+            };
             /** Lead In S */
             lead_in_s: number;
             /** Lead Out S */
@@ -3347,7 +3364,7 @@ export interface components {
              */
             kind: "tolerance" | "slow_down" | "heading_offset" | "mounting_offset" | "relax";
             /** Limit */
-            limit?: ("position" | "rate" | "acceleration") | null;
+            limit?: ("position" | "rate" | "acceleration" | "jerk") | null;
         };
         /**
          * RemedyOut
@@ -3368,7 +3385,7 @@ export interface components {
              */
             kind: "tolerance" | "slow_down" | "heading_offset" | "mounting_offset" | "relax";
             /** Limit */
-            limit: ("position" | "rate" | "acceleration") | null;
+            limit: ("position" | "rate" | "acceleration" | "jerk") | null;
             /**
              * Of
              * @description The plan that it is a remedy of
@@ -4803,7 +4820,7 @@ export interface components {
              * Limit
              * @enum {string}
              */
-            limit: "position" | "rate" | "acceleration";
+            limit: "position" | "rate" | "acceleration" | "jerk";
             /**
              * Samples
              * @description Length of the run
@@ -4813,7 +4830,7 @@ export interface components {
             time_s: number;
             /**
              * Value
-             * @description deg, deg/s or deg/s^2, by the limit
+             * @description deg, deg/s, deg/s^2 or deg/s^3, by the limit
              */
             value: number;
         };

@@ -7,6 +7,7 @@ const FRAME: FrameLimits = {
   max_deg: 60,
   max_rate_deg_s: 600,
   max_acceleration_deg_s2: null,
+  max_jerk_deg_s3: null,
   home_deg: 0,
 };
 

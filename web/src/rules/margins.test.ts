@@ -1,8 +1,16 @@
 import { describe, expect, it } from "vitest";
-import type { Plan } from "../contract/types";
-import { blockSentence, marginOf, marksOf } from "./margins";
+import type { Plan, Rig } from "../contract/types";
+import { RIG } from "../testing/wire";
+import { blockSentence, limitsTold, marginOf, marksOf } from "./margins";
 
-const LIMITS = { min_deg: -60, max_deg: 60, max_rate_deg_s: 100, max_acceleration_deg_s2: null, home_deg: 0 };
+const LIMITS = {
+  min_deg: -60,
+  max_deg: 60,
+  max_rate_deg_s: 100,
+  max_acceleration_deg_s2: null,
+  max_jerk_deg_s3: null,
+  home_deg: 0,
+};
 const FREE = { ...LIMITS, min_deg: null, max_deg: null };
 
 function plan(position: number | null, report: object = {}): Plan {
@@ -64,4 +72,11 @@ describe("what closes the way, as a sentence", () => {
       "At 2.000 s the inner frame reaches 812.3 deg/s, beyond its rate limit of ±100 deg/s.",
     );
   });
+});
+
+it("tells jerk of a rig that limits it, and of no other", () => {
+  const { base, ...others } = RIG.frames;
+  const rig: Rig = { ...RIG, frames: { ...others, base: base && { ...base, max_jerk_deg_s3: 5000 } } };
+  expect(limitsTold(RIG)).not.toContain("jerk");
+  expect(limitsTold(rig)).toContain("jerk");
 });

@@ -1,12 +1,23 @@
 /** How near a plan comes to the limits, and what closes its way. */
-import type { FrameName, LimitName, Plan, PlanMargin, FrameLimits } from "../contract/types";
+import type { FrameName, LimitName, Plan, PlanMargin, FrameLimits, Rig } from "../contract/types";
 import { fixed, scientific } from "./format";
 import { positionLimits } from "./limits";
+import { framesOf } from "./rig";
 
-export const LIMITS: readonly LimitName[] = ["position", "rate", "acceleration"];
-export const UNITS: Record<LimitName, string> = { position: "deg", rate: "deg/s", acceleration: "deg/s²" };
+export const LIMITS: readonly LimitName[] = ["position", "rate", "acceleration", "jerk"];
+export const UNITS: Record<LimitName, string> = {
+  position: "deg",
+  rate: "deg/s",
+  acceleration: "deg/s²",
+  jerk: "deg/s³",
+};
 /** What the wire calls each of them, of margins and of peaks. */
-export const KEYS = { position: "position_deg", rate: "rate_deg_s", acceleration: "acceleration_deg_s2" } as const;
+export const KEYS = {
+  position: "position_deg",
+  rate: "rate_deg_s",
+  acceleration: "acceleration_deg_s2",
+  jerk: "jerk_deg_s3",
+} as const;
 
 /** Differences of sampled angles reach a limit to this share of it and are still inside [of the limit]. */
 const TOLERANCE = 1e-6;
@@ -19,10 +30,17 @@ export interface Margin {
   text: string;
 }
 
+/** The limits that are told of a rig: jerk, which few rigs limit, only where a frame does. */
+export function limitsTold(rig: Rig | undefined): readonly LimitName[] {
+  const jerks = framesOf(rig).some(({ limits }) => limits.max_jerk_deg_s3 !== null);
+  return jerks ? LIMITS : LIMITS.filter((limit) => limit !== "jerk");
+}
+
 /** What a limit is counted in: half of a range of positions, the limit itself otherwise; null for none. */
 export function sizeOf(limit: LimitName, limits: FrameLimits): number | null {
   if (limit === "rate") return limits.max_rate_deg_s;
   if (limit === "acceleration") return limits.max_acceleration_deg_s2;
+  if (limit === "jerk") return limits.max_jerk_deg_s3;
   const range = positionLimits(limits);
   return range === null ? null : (range[1] - range[0]) / 2;
 }

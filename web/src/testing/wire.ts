@@ -71,6 +71,7 @@ const LIMITS = {
   max_deg: 170,
   max_rate_deg_s: 200,
   max_acceleration_deg_s2: 500,
+  max_jerk_deg_s3: null,
   weight: 1,
   home_deg: 0,
 };

@@ -236,6 +236,7 @@ def _samples(plan: str, services: Services, points: int) -> PlanSamples:
     angles = np.rad2deg(stored.angles)
     rates = np.gradient(angles, dt, axis=0) if len(angles) > 1 else np.zeros_like(angles)
     accelerations = np.gradient(rates, dt, axis=0) if len(angles) > 1 else np.zeros_like(angles)
+    jerks = np.gradient(accelerations, dt, axis=0) if len(angles) > 1 else np.zeros_like(angles)
     error = np.rad2deg(stored.error)
     rows = thin(info.samples, points, angles, rates, error)
     time_s = (rows - info.lead_in_samples) * dt
@@ -251,6 +252,7 @@ def _samples(plan: str, services: Services, points: int) -> PlanSamples:
             "angles_deg": frames(angles),
             "rates_deg_s": frames(rates),
             "accelerations_deg_s2": frames(accelerations),
+            "jerks_deg_s3": frames(jerks),
             "error_deg": [value if math.isfinite(value) else None for value in error[rows].tolist()],
             "q": [q if math.isfinite(q[0]) else None for q in stored.target[rows].tolist()],
             "lead_in_s": info.lead_in_samples * dt,

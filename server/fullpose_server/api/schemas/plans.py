@@ -60,6 +60,8 @@ class PeakOut(Wire):
     position_deg: float
     rate_deg_s: float
     acceleration_deg_s2: float
+    jerk_deg_s3: float | None = Field(default=None, description="Of the samples' third differences")
+    jerk_percent: float | None = Field(default=None, description="Of the frame's limit; null: it has none")
 
 
 class PeaksOut(Wire):
@@ -75,7 +77,7 @@ class ViolationOut(Wire):
     time_s: float
     frame: FrameName
     limit: LimitName
-    value: float = Field(description="deg, deg/s or deg/s^2, by the limit")
+    value: float = Field(description="deg, deg/s, deg/s^2 or deg/s^3, by the limit")
     samples: int = Field(description="Length of the run")
 
 
@@ -86,7 +88,7 @@ class BlockingOut(Wire):
 
 
 class LimitMetOut(Wire):
-    """A frame and one of its limits: `value` against `bound`, in deg, deg/s or deg/s^2 by the limit."""
+    """A frame and one of its limits: `value` against `bound`, in deg, deg/s, deg/s^2 or deg/s^3 by the limit."""
 
     time_s: float
     frame: FrameName
@@ -178,11 +180,12 @@ class MarginOut(Wire):
 
 
 class FrameMargins(Wire):
-    """Null: no limit. deg, deg/s, deg/s^2."""
+    """Null: no limit. deg, deg/s, deg/s^2, deg/s^3."""
 
     position_deg: MarginOut | None
     rate_deg_s: MarginOut | None
     acceleration_deg_s2: MarginOut | None
+    jerk_deg_s3: MarginOut | None = None
 
 
 class MarginsOut(Wire):
@@ -249,6 +252,7 @@ class PlanSamples(Wire):
     angles_deg: dict[FrameName, list[float]]
     rates_deg_s: dict[FrameName, list[float]]
     accelerations_deg_s2: dict[FrameName, list[float]]
+    jerks_deg_s3: dict[FrameName, list[float]]
     error_deg: list[float | None]
     q: list[Four | None]
     lead_in_s: float

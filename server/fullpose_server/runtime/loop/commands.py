@@ -190,6 +190,8 @@ class CommandHandler:
                 return self._ready_to_arm(request, now)
             case Command.START | Command.MOVE | Command.HOME | Command.JOG:
                 return GivenOf(move=orders.move_of(command, request.args, p.config.rig, p.motion))
+            case Command.HOLD:
+                orders.check_hold(p.config.rig)
             case Command.GO_LIVE:
                 orders.check_inside(p.config.rig, p.motion)
             case Command.SHELVE | Command.UNSHELVE:

@@ -142,7 +142,7 @@ class ControlLoop:
 
     def _guard(self) -> Finding | None:
         motion = self._p.motion
-        return self._p.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)
+        return self._p.guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a, motion.jerk_from)
 
     def _publish(self, now_ns: int, lateness_ns: int, missed: int) -> None:
         """Tell who asked that it is done, the record, and the live source."""

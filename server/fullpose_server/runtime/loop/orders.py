@@ -10,7 +10,8 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from fullpose.rig import FRAMES, Rig
+from fullpose.rig import FRAMES, Limit, Rig
+from fullpose.verify import verify
 from fullpose_server.formats.plan_folder import (
     PlanFolder,
     PlanFolderError,
@@ -75,6 +76,8 @@ def load_of(
         text = f"plan.json: plan_hash is {info.plan_hash[:16]}, not that of the plan that was made"
         raise OrderError("bad_plan", f"{text} ({args['plan_hash'][:16]}): make it again")
     _check_path(plan, rig)
+    if rig.jerk_limited:
+        _check_jerk(plan, rig, motion.rate_hz)
     binding = Binding(info.plan_id, info.plan_hash, info.rig, info.rig_hash)
     return binding, Load(plan, Path(folder), motion.ready(plan))
 
@@ -117,6 +120,27 @@ def _check_path(plan: PlanFolder, rig: Rig) -> None:
         if fast.any():
             name = FRAMES[int(np.argmax(fast))]
             raise OrderError("bad_plan", f"the plan does not {where} at rest ({name} frame): it needs a lead to rest")
+
+
+def _check_jerk(plan: PlanFolder, rig: Rig, rate_hz: float) -> None:
+    """A path keeps the jerk limits, rest before and after it included, at the rate at which it is flown."""
+    if abs(plan.info.rate_hz / rate_hz - 1.0) > 1e-9:
+        told = f"made at {plan.info.rate_hz:g} Hz, and flown at {rate_hz:g} Hz, where its jerk is another"
+        raise OrderError("bad_plan", f"the plan was {told}: make it again")
+    path = np.concatenate([np.repeat(plan.angles[:1], 3, axis=0), plan.angles, np.repeat(plan.angles[-1:], 3, axis=0)])
+    found = [v for v in verify(np.arange(len(path)) / rate_hz, path, rig).violations if v.limit is Limit.JERK]
+    if found:
+        first = found[0]
+        at = first.time - 3.0 / rate_hz - plan.info.lead_in_samples / rate_hz + plan.info.start_s
+        raise OrderError(
+            "bad_plan", f"at {at:.3f} s the {first.frame} frame exceeds its jerk limit: make the plan again"
+        )
+
+
+def check_hold(rig: Rig) -> None:
+    """Raise `OrderError` where a hold on the path would not keep the rig's limits."""
+    if rig.jerk_limited:
+        raise OrderError("jerk_limits", f"{rig.name} has max_jerk_deg_s3, which a hold on the path does not keep: stop")
 
 
 def asked_pair(args: dict[str, Any], bound: Binding | None) -> Binding | None:

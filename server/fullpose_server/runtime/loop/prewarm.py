@@ -60,7 +60,7 @@ def _path(config: RigConfig) -> None:
         for _ in range(4):
             motion.tick()
             motion.solve_error(rig.axes)
-            guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a)
+            guard.command(motion.x, motion.x1, motion.v1, motion.v, motion.a, motion.jerk_from)
             motion.commit()
             guard.measured(motion.x, motion.x1, motion.q1)
     motion.v1[:] = math.radians(1.0)

@@ -57,7 +57,12 @@ class Supervision:
             return
         for event in machine.silence(now):
             told = "may command no longer" if machine.lapsed else "is silent"
-            yield Silent(WarningCode.OWNER_SILENT, f"the lease's holder {told}", event)
+            yield Silent(WarningCode.OWNER_SILENT, f"the lease's holder {told}", self._kept(event))
         beat = int(self._parts.shared.header["server_beat_ns"][0]) / 1e9
         for event in self._server_silence.due(now - beat):
-            yield Silent(WarningCode.SERVER_SILENT, "the server is silent", event)
+            yield Silent(WarningCode.SERVER_SILENT, "the server is silent", self._kept(event))
+
+    def _kept(self, event: Event) -> Event:
+        """The stage, or the next one: a hold on the path does not keep jerk limits, a stop does."""
+        hold = event is Event.SILENT_HOLD and self._parts.config.rig.jerk_limited
+        return Event.SILENT_STOP if hold else event

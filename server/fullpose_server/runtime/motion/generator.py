@@ -5,7 +5,7 @@ refuses is dropped, and braking starts from the last command that was written.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import ClassVar, Protocol, TypeAlias, assert_never
 
@@ -17,6 +17,7 @@ from fullpose.rig import Rig
 from fullpose_server.formats.plan_folder import PlanFolder
 from fullpose_server.runtime.contract.config import MotionConfig
 from fullpose_server.runtime.motion.braking import brake_step, deceleration_for
+from fullpose_server.runtime.motion.jerk_braking import JerkBraking, jerk_braking
 from fullpose_server.runtime.motion.path_player import PathPlayer, attitude_error
 from fullpose_server.runtime.motion.point_to_point import PointMove
 from fullpose_server.session.states import Event
@@ -81,10 +82,12 @@ class Following:
 
 @dataclass(frozen=True)
 class Braking:
-    """Brake by `deceleration` (4,) [rad/s^2]."""
+    """Brake by `deceleration` (4,) [rad/s^2]; frames with a jerk limit along `jerk_limited`, begun `time` [s] ago."""
 
     mode: ClassVar = Mode.BRAKE
     deceleration: Array
+    jerk_limited: JerkBraking | None = None
+    time: float = 0.0
 
 
 Task: TypeAlias = Resting | Moving | Playing | Following | Braking
@@ -92,7 +95,7 @@ _REST = Resting()
 
 
 class Motion:
-    """One rig's motion. `x`, `v`, `a` hold the proposal, `x1`, `v1` the last command; (4,) [rad], base first."""
+    """One rig's motion. `x`, `v`, `a` hold the proposal, `x1`, `v1`, `a1` the last command; (4,) [rad], base first."""
 
     def __init__(self, rig: Rig, config: MotionConfig, rate_hz: float) -> None:
         self._rig = rig
@@ -102,7 +105,8 @@ class Motion:
         self._task: Task = _REST
         self.x, self.v, self.a = np.zeros(4), np.zeros(4), np.zeros(4)
         self.q = np.full(4, math.nan)
-        self.x1, self.v1 = np.zeros(4), np.zeros(4)
+        self.x1, self.v1, self.a1 = np.zeros(4), np.zeros(4), np.zeros(4)
+        self.jerk_given_way = False  # a brake is beyond a jerk limit, since a limit of position or rate comes first
         self.q1 = np.full(4, math.nan)
         self._player: PathPlayer | None = None
         self._limits = (rig.position_min, rig.position_max, rig.max_acceleration)
@@ -130,7 +134,8 @@ class Motion:
         """Rest at `position`: where the table stands when its drive is enabled, or while the drive itself brakes."""
         self._task = _REST
         self.x[:] = self.x1[:] = position
-        self.v[:] = self.v1[:] = self.a[:] = 0.0
+        self.v[:] = self.v1[:] = self.a[:] = self.a1[:] = 0.0
+        self.jerk_given_way = False
         self.q[:] = self.q1[:] = math.nan
 
     def plan_start(self) -> PointMove:
@@ -165,8 +170,18 @@ class Motion:
         unlimited = math.radians(self._config.unlimited_brake_deg_s2)
         wanted = deceleration_for(share, self.x1, self.v1, *self._limits, unlimited)
         if isinstance(self._task, Braking):  # an E-stop during a stop may brake harder, never softer
+            if self._task.jerk_limited is not None and self._task.jerk_limited.fastest and not fastest:
+                return
             wanted = np.maximum(wanted, self._task.deceleration)
-        self._task = Braking(wanted)
+        self._task = Braking(wanted, self._jerk_braking(share, fastest=fastest))
+
+    def _jerk_braking(self, share: float, *, fastest: bool) -> JerkBraking | None:
+        if not self._rig.jerk_limited:
+            return None
+        state = (self.x1, self.v1, self.a1)
+        chosen = jerk_braking(self._rig, self._dt, state, share, fastest=fastest)
+        self.jerk_given_way = self.jerk_given_way or chosen.given_way
+        return chosen
 
     def _loaded(self) -> PathPlayer:
         if self._player is None:
@@ -190,20 +205,34 @@ class Motion:
             case Following(live=live):
                 if not live.tick(self.x1, self.v1, self.x, self.q):
                     return Event.SOURCE_LOST
-            case Braking(deceleration=deceleration):
-                if brake_step(self._dt, deceleration, self.x1, self.v1, self.x, self.v):
-                    self._task = _REST
-                    return Event.AT_REST
+            case Braking() as braking:
+                return self._brake_on(braking)
             case Resting():
                 self.x[:] = self.x1
             case _:
                 assert_never(self._task)
         return None
 
+    def _brake_on(self, braking: Braking) -> Event | None:
+        rest = brake_step(self._dt, braking.deceleration, self.x1, self.v1, self.x, self.v)
+        if braking.jerk_limited is not None:
+            ways = braking.jerk_limited.ways
+            rest = all(way is not None or self.v[i] == 0.0 for i, way in enumerate(ways))
+            time = braking.time + self._dt
+            rest = braking.jerk_limited.place(time, self.x) and rest
+            self._task = replace(braking, time=time)
+        if not rest:
+            return None
+        self._task = _REST
+        return Event.AT_REST
+
     def commit(self) -> None:
         """The proposal was written: it is the last command now."""
         self.x1[:] = self.x
         self.v1[:] = self.v
+        self.a1[:] = self.a
+        if self.jerk_given_way and self._task is _REST and not self.a1.any():
+            self.jerk_given_way = False
         self.q1[:] = self.q
 
     def solve_error(self, axes: NDArray[np.int64]) -> float:
@@ -211,6 +240,16 @@ class Motion:
         if math.isnan(self.q[0]):
             return math.nan
         return float(attitude_error(axes, self.x, self.q))
+
+    @property
+    def rate_hz(self) -> float:
+        """Of the commands."""
+        return self._rate_hz
+
+    @property
+    def jerk_from(self) -> Array | None:
+        """The last acceleration (4,) [rad/s^2], from which the jerk counts; None where it has given way."""
+        return None if self.jerk_given_way else self.a1
 
     @property
     def mode(self) -> Mode:

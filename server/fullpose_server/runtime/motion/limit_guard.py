@@ -1,9 +1,9 @@
 """The guard between any source of commands and any drive.
 
 `check_command` looks at a command before it is written: finiteness, step, position, rate, acceleration, and whether
-the frame could still brake before its position limit. A frame that was found outside its range may stand or come back,
-never go farther out. `observe` looks at what the rig did. Limits that a rig has not are infinite; a limit of zero is a
-limit.
+the frame could still brake before its position limit; `check_jerk` at its jerk, of a rig that limits that. A frame that
+was found outside its range may stand or come back, never go farther out. `observe` looks at what the rig did. Limits
+that a rig has not are infinite; a limit of zero is a limit.
 """
 
 import math
@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 
 from fullpose._jit import kernel
 from fullpose._typing import Array
-from fullpose.bounds import POSITION_TOLERANCE, TOLERANCE
+from fullpose.bounds import JERK_ROUNDING, POSITION_TOLERANCE, TOLERANCE
 from fullpose.rig import FRAMES, Rig
 from fullpose_server.runtime.contract.config import GuardConfig, Tolerance
 from fullpose_server.runtime.motion.braking import stopping_distance
 from fullpose_server.runtime.motion.path_player import attitude_error
 from fullpose_server.session.warning_codes import WarningCode
 
-FINITE, STEP, POSITION, RATE, ACCELERATION, BRAKING = range(1, 7)
-CHECKS = ("", "finite", "step", "position", "rate", "acceleration", "braking")
-_UNITS = ("", "deg", "deg", "deg", "deg/s", "deg/s^2", "deg")
+FINITE, STEP, POSITION, RATE, ACCELERATION, BRAKING, JERK = range(1, 8)
+CHECKS = ("", "finite", "step", "position", "rate", "acceleration", "braking", "jerk")
+_UNITS = ("", "deg", "deg", "deg", "deg/s", "deg/s^2", "deg", "deg/s^3")
 # Rows of the limits.
 LOWER, UPPER, MAX_RATE, MAX_ACCELERATION, MAX_STEP = 0, 1, 2, 3, 4
 _ROUNDING = 16.0 * 2.22e-16  # of positions, as accelerations see it through two differences
@@ -73,6 +73,21 @@ def check_command(dt: float, limits: Array, x: Array, x1: Array, v1: Array, v: A
 
 
 @kernel
+def check_jerk(dt: float, most: Array, x: Array, a: Array, a1: Array, found: Array) -> int:
+    """Check the acceleration a after a1, all (4,) [rad/s^2], against the jerk limits `most` (4,); as `check_command`.
+
+    x (4,) [rad]. found (3,): the margin becomes the smaller one.
+    """
+    for i in range(4):
+        jerk = (a[i] - a1[i]) / dt
+        if abs(jerk) > most[i] * (1.0 + TOLERANCE) + JERK_ROUNDING * (1.0 + abs(x[i])) / (dt * dt * dt):
+            found[0], found[1], found[2] = jerk, math.copysign(most[i], jerk), 0.0
+            return 1 + 8 * i + JERK
+        found[2] = min(found[2], max(0.0, 1.0 - abs(jerk) / most[i]))
+    return 0
+
+
+@kernel
 def observe(axes: NDArray[np.int64], measured: Array, due: Array, target: Array, following: Array) -> float:
     """following (4,) <- measured - due [rad]; returns the payload's geodesic error [rad] against target (4,).
 
@@ -110,6 +125,7 @@ class Guard:
         self._limits[MAX_RATE] = rig.max_rate
         self._limits[MAX_ACCELERATION] = rig.max_acceleration
         self._limits[MAX_STEP] = math.radians(config.max_step_deg)
+        self._max_jerk = rig.max_jerk if rig.jerk_limited else None
         self._config = config
         self._found = np.zeros(3)
         self._warn = _rad(config.following_deg.warn)
@@ -117,9 +133,14 @@ class Guard:
         self.following = np.zeros(4)
         self.margin = 1.0
 
-    def command(self, x: Array, x1: Array, v1: Array, v: Array, a: Array) -> Finding | None:
-        """Check x before it is written; fills its rate v and acceleration a."""
+    def command(self, x: Array, x1: Array, v1: Array, v: Array, a: Array, a1: Array | None = None) -> Finding | None:
+        """Check x before it is written; fills its rate v and acceleration a.
+
+        a1 (4,) [rad/s^2]: the last one, from which the jerk counts; None: it does not.
+        """
         code = check_command(self._dt, self._limits, x, x1, v1, v, a, self._found)
+        if code == 0 and a1 is not None and self._max_jerk is not None:
+            code = check_jerk(self._dt, self._max_jerk, x, a, a1, self._found)
         self.margin = float(self._found[2])
         if code == 0:
             return None

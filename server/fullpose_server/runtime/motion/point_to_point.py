@@ -45,7 +45,7 @@ class PointMove:
         rate, acceleration = math.radians(config.move_rate_deg_s), math.radians(config.move_acceleration_deg_s2)
         plan.max_velocity = [min(rate, _SHARE * float(v)) for v in rig.max_rate]
         plan.max_acceleration = [min(acceleration, _SHARE * float(v)) for v in rig.max_acceleration]
-        plan.max_jerk = [math.radians(config.move_jerk_deg_s3)] * 4
+        plan.max_jerk = [min(math.radians(config.move_jerk_deg_s3), _SHARE * float(v)) for v in rig.max_jerk]
         plan.synchronization = Synchronization.Time
         self._path = Trajectory(4)
         try:
