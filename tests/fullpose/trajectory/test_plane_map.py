@@ -141,7 +141,7 @@ def test_a_path_is_as_tight_as_its_check_finds_it() -> None:
     found = verify(T, solution.angles, rig)
     assert found.violations == ()
     spread = np.array([100.0 * DEG, math.inf, math.inf, 200.0 * DEG])
-    shares = 1.0 - found.peaks / np.stack([spread, rig.max_rate, rig.max_acceleration], axis=1)
+    shares = 1.0 - found.peaks / np.stack([spread, rig.max_rate, rig.max_acceleration, rig.max_jerk], axis=1)
     assert path.margin[path.tightest] == pytest.approx(shares.min(), abs=1e-12)
     frame, limit = np.unravel_index(np.argmin(shares), shares.shape)
     assert limited_name(int(path.binding[path.tightest])) == (FRAMES[frame], list(Limit)[limit])
