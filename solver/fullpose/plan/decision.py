@@ -14,12 +14,13 @@ from fullpose.plan.impossible import beyond_all_frames
 from fullpose.plan.least_tolerance import BRIEF, LeastTolerance, least_tolerance
 from fullpose.plan.node_paths import cheapest
 from fullpose.plan.recorded_noise import recorded_noise
-from fullpose.plan.refinement import Task, refined
+from fullpose.plan.refinement import Task, how_far, refined
 from fullpose.plan.strategies import State, first_look, search
 from fullpose.plan.three_axis import three_axis_path
 from fullpose.rig import FRAMES, LIMITS, Limit
 from fullpose.solution import Blocking
 from fullpose.trajectory.constraints import largest_violation, rig_limits
+from fullpose.trajectory.curve import closest_all
 from fullpose.trajectory.problem import Problem
 from fullpose.trajectory.windows import Path, smooth_curve
 from fullpose.verify import attitude_errors, payload_attitudes
@@ -29,6 +30,7 @@ STRETCH = 4.0  # times the rate limit that an edge may take, at a price, for a f
 VIOLATION_COST = 100.0  # that price: the cost of going over a rate limit by its whole
 WIDENED = 0.5  # [rad] that ranges are widened by where even that finds none
 SAME_STAMP = 1e-9  # [s]
+NEARLY_EXACT = math.radians(0.02)  # tolerance below which an exact path is near
 BROKEN = 100.0  # times a limit: a path that jumps, of no use to begin with
 
 # Which limit closed the last stage, and what decided then: only the inertia of a start rate closes by acceleration.
@@ -124,7 +126,23 @@ def _outside(task: Task, state: State, path: Path) -> Flown:
     least = least_tolerance(problem, [path.angles, task.fallback.exact], task.progress)
     if not least.limited.any() and problem.start_rate is None:  # not even that gave the attitude up
         return _inside(state, least.angles, path)
+    if (exact := _back_on_solutions(task, least)) is not None:
+        return _inside(state, exact.angles, exact)
     return _given_up(problem, failed, least)
+
+
+def _back_on_solutions(task: Task, least: LeastTolerance) -> Path | None:
+    """The exact path beside one of nearly no tolerance that all frames found inside the jerk limits; None: none.
+
+    Put back as it is, the small error that is gone leaves its third differences behind.
+    """
+    problem = task.problem
+    if not problem.rig.jerk_limited or least.tolerance > NEARLY_EXACT:
+        return None
+    angles = least.angles.copy()
+    closest_all(problem.rig.axes, problem.rig.geometry.horizontal, problem.attitude, angles)
+    path = refined(task, angles)
+    return path if how_far(problem, path) <= MET else None
 
 
 def _given_up(problem: Problem, failed: Flown, least: LeastTolerance) -> Flown:

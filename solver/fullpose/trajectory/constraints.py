@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fullpose._typing import Array
-from fullpose.bounds import LOWER, RATE, UPPER
+from fullpose.bounds import JERK, LOWER, RATE, UPPER
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Blocking
 from fullpose.trajectory.bspline import Basis
 from fullpose.trajectory.linearisation import (
+    JERK_ROW,
     ROW,
     Iterate,
     Limits,
@@ -50,7 +51,7 @@ def rig_limits(rig: Rig, reserve: float = 0.0) -> Limits:
     clear = np.minimum(CLEAR, 0.1 * span) if reserve > 0.0 else 0.0
     return Limits(
         rig.position_min + clear, rig.position_max - clear,
-        rig.max_rate * (1.0 - reserve), rig.max_acceleration * (1.0 - reserve),
+        rig.max_rate * (1.0 - reserve), rig.max_acceleration * (1.0 - reserve), rig.max_jerk * (1.0 - reserve),
     )  # fmt: skip
 
 
@@ -60,7 +61,7 @@ def largest_violation(time: Array, angles: Array, limits: Limits, last: int | No
     largest = LimitViolation(-np.inf, 0, 0, 0)
     for begin in range(0, n, CHUNK):
         end = min(n, begin + CHUNK)
-        part = slice(max(0, begin - 1), end + 1)
+        part = slice(max(0, begin - 2), end + 1)
         violations, frame = exceeded(time[part], angles[part], limits)
         own = violations[begin - part.start : end - part.start]
         k, kind = np.unravel_index(np.argmax(own), own.shape)
@@ -71,8 +72,9 @@ def largest_violation(time: Array, angles: Array, limits: Limits, last: int | No
 
 
 def exceeded(time: Array, angles: Array, limits: Limits) -> tuple[Array, NDArray[np.int8]]:
-    """`limit_violations` of a path (n, 4) [rad]: how far outside each sample is (n, 3), and whose limit (n, 3)."""
-    violations, frame = np.empty((len(time), 3)), np.empty((len(time), 3), np.int8)
+    """`limit_violations` of a path (n, 4) [rad]: how far outside each sample is, and whose limit: (n, 3 or 4) each."""
+    shape = len(time), limits.kinds
+    violations, frame = np.empty(shape), np.empty(shape, np.int8)
     limit_violations(time, angles, limits, violations, frame)
     return violations, frame
 
@@ -80,8 +82,9 @@ def exceeded(time: Array, angles: Array, limits: Limits) -> tuple[Array, NDArray
 def rows_within_reach(at: Iterate, basis: Basis, limits: Limits, reach: Reach) -> Rows:
     """The rows of limits that may matter to a step, as many as there are."""
     size = 1024
+    width = JERK_ROW if limits.kinds > JERK else ROW
     while True:
-        rows = Rows(np.empty(size, np.int64), np.empty((size, ROW)), np.empty(size), np.empty((size, 3), np.int64))
+        rows = Rows(np.empty(size, np.int64), np.empty((size, width)), np.empty(size), np.empty((size, 3), np.int64))
         count = limit_rows(at, basis, limits, reach, rows)
         if count <= size:
             return Rows(rows.origin[:count], rows.rows[:count], rows.room[:count], rows.bound[:count])
@@ -113,6 +116,8 @@ def _frame_cuts(at: Iterate, basis: Basis, limits: Limits, at_end: bool, i: int)
     here[shift : shift + basis.values.shape[1]] = n[k, i] * basis.values[k]
     rate = difference(RATE, first + 1, i, time, d)
     a = limits.acceleration[i]
+    # What the acceleration takes to rise, and to fall, for its jerk limit.
+    rise = a / limits.jerk[i] if np.isfinite(a) and np.isfinite(limits.jerk[i]) else 0.0
     fastest = limits.rate[i] if np.isfinite(limits.rate[i]) else max(abs(rate), 1.0)
     # Without an acceleration limit the samples' way is all: one row.
     speeds = np.r_[TANGENTS * fastest, abs(rate)] if np.isfinite(a) else np.zeros(1)
@@ -122,7 +127,7 @@ def _frame_cuts(at: Iterate, basis: Basis, limits: Limits, at_end: bool, i: int)
         room = limits.high[i] - d[k, i] if side == UPPER else d[k, i] - limits.low[i]
         toward = sign if at_end else -sign
         for v in speeds:
-            slope = 2.0 * ROOM * v / a + SHORTEST * h
+            slope = 2.0 * ROOM * v / a + SHORTEST * h + rise
             row = sign * here + toward * slope * rate_row
             value = room - slope * toward * rate + ROOM / a * v * v
             cuts.append(Row(origin, row / LEAD_UNIT, value / LEAD_UNIT))

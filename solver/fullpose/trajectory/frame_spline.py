@@ -2,7 +2,7 @@
 
 The derivatives of a uniform B-spline are B-splines of the coefficients' differences, and a B-spline stays inside the
 hull of its coefficients (de Boor, A Practical Guide to Splines, chapters IX to XI): coefficients inside the ranges,
-their first and second differences inside the rate and acceleration limits, and the frames are inside at every time. The
+their first, second and third differences inside the rate, acceleration and jerk limits, and the frames are inside. The
 samples' differences, which the verdict takes, are averages of the derivatives, so they are inside too.
 """
 
@@ -95,6 +95,11 @@ def limit_rows(spline: FrameSpline, rig: Rig) -> LimitRows:
             sparse.kron(bend, sparse.diags(1.0 / (acceleration * (1.0 - RESERVE) * spline.spacing**2))),
         ]
     )
+    limited = np.flatnonzero(np.isfinite(rig.max_jerk[columns]))
+    if limited.size and spline.size > 3:
+        share = 1.0 / (rig.max_jerk[columns][limited] * (1.0 - RESERVE) * spline.spacing**3)
+        chosen = sparse.csr_matrix((share, (np.arange(limited.size), limited)), shape=(limited.size, len(columns)))
+        rows = sparse.vstack([rows, sparse.kron(difference_matrix(spline.size, 3), chosen)])
     G = sparse.vstack([rows, -rows], format="csr")
     low, high = rig.position_min[columns] + CLEAR, rig.position_max[columns] - CLEAR
     return LimitRows(G, np.ones(G.shape[0]), np.tile(low, spline.size), np.tile(high, spline.size))

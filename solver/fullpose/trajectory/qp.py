@@ -15,7 +15,7 @@ from scipy import sparse
 from fullpose._typing import Array, Integers
 from fullpose.trajectory.bspline import PINNED
 from fullpose.trajectory.cost import QuadraticModel
-from fullpose.trajectory.linearisation import ROW, Row
+from fullpose.trajectory.linearisation import Row
 
 SLACK_COST = 100.0  # per whole limit and group; the rest of the cost is of the order of one a second
 SLACK_CURVATURE = 1e-3  # makes the slacks unique
@@ -41,7 +41,7 @@ class QuadraticProgramme:
 
     model: QuadraticModel  # H (size, band) H[j, j + b], g (size,)
     origin: Integers  # (r,)
-    rows: Array  # (r, ROW)
+    rows: Array  # (r, ROW or JERK_ROW)
     room: Array  # (r,)
     group: Integers  # (r,) rows of one group share a slack
     trust: float
@@ -115,7 +115,7 @@ def matrices(problem: QuadraticProgramme) -> Matrices:
     hessian = upper_part + sparse.triu(upper_part, 1).T
     P: Matrix = sparse.block_diag([hessian, sparse.identity(s) * SLACK_CURVATURE], format="csc")
     q = np.concatenate([problem.model.g, np.full(s, problem.slack_cost)])
-    column = (problem.origin[:, None] + np.arange(ROW)) * problem.every + problem.frame[:, None]
+    column = (problem.origin[:, None] + np.arange(problem.rows.shape[1])) * problem.every + problem.frame[:, None]
     kept = problem.rows != 0.0
     row_number = np.repeat(np.arange(r), kept.sum(axis=1))
     G: Matrix = sparse.csc_matrix(

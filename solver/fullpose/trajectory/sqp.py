@@ -73,7 +73,7 @@ def discretised(problem: Problem) -> Discretisation:
 
 
 def mark_exceeded(time: Array, path: Array, limits: Limits, flags: Flags) -> None:
-    """flags (n, 3) |= the samples of a path (n, 4) [rad] that are over a limit, by its kind."""
+    """flags (n, 3 or 4) |= the samples of a path (n, 4) [rad] that are over a limit, by its kind."""
     violations, _ = exceeded(time, path, limits)
     flags |= (violations > FLAGGED).astype(np.uint8)
 
@@ -110,7 +110,7 @@ def refine(
         merit += VIOLATION_COST * fallen
         return merit + missed_cost * missed(path)
 
-    flags = np.zeros((len(time), 3), np.uint8)
+    flags = np.zeros((len(time), mesh.limits.kinds), np.uint8)
     trust, count = options.trust, 0
     best_merit = merit_of(d, best.violation, 0)
     for count in range(1, options.iterations + 1):
@@ -165,7 +165,7 @@ def _programme(
     return QuadraticProgramme(
         model=model,
         origin=np.r_[rows.origin, np.array([cut.origin for cut in cuts], np.int64)],
-        rows=np.vstack([rows.rows, *(cut.row for cut in cuts)]),
+        rows=np.vstack([rows.rows, *(np.r_[cut.row, np.zeros(rows.rows.shape[1] - ROW)] for cut in cuts)]),
         room=np.r_[rows.room, [cut.value for cut in cuts]],
         group=np.r_[rows.origin, np.full(len(cuts), basis.size)],  # a slack a piece of the spline, one for the leads
         frame=np.zeros(count, np.int64),

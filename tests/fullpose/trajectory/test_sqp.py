@@ -14,6 +14,7 @@ from fullpose.trajectory.constraints import exceeded, largest_violation, lead_cu
 from fullpose.trajectory.cost import Cost, QuadraticModel, cost_bands, cost_of, path_cost
 from fullpose.trajectory.curve import null_vectors
 from fullpose.trajectory.linearisation import (
+    JERK_ROW,
     POSITION_UNIT,
     ROW,
     Iterate,
@@ -55,13 +56,13 @@ def at(flight):
     return Iterate(problem.time, d, n)
 
 
-@pytest.mark.parametrize("kind", [0, 1, 2])
+@pytest.mark.parametrize("kind", [0, 1, 2, 3])
 def test_rows_are_the_derivatives_of_the_differences(at, kind):
     t, d, n = at
     basis = spline_basis(t, 0.025)
-    row = np.empty(ROW)
+    row = np.empty(JERK_ROW)
     random = np.random.default_rng(1)
-    for k in random.integers(1, len(t) - 1, 25):
+    for k in random.integers(2, len(t) - 1, 25):
         for i in range(4):
             origin = fill_row(kind, int(k), i, at, basis, row)
             c = np.zeros(basis.size)
@@ -70,7 +71,7 @@ def test_rows_are_the_derivatives_of_the_differences(at, kind):
             moved = np.empty_like(d)
             displaced(d, n, basis, c, moved)
             expected = difference(kind, int(k), i, t, moved) - difference(kind, int(k), i, t, d)
-            assert row[one - origin] == pytest.approx(expected, rel=1e-6, abs=1e-7)
+            assert row[one - origin] == pytest.approx(expected, rel=1e-6, abs=1e-7 if kind < 3 else 1e-4)
 
 
 def test_over_limits_agrees_with_the_independent_check(flight):
