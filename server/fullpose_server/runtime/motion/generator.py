@@ -219,7 +219,7 @@ class Motion:
             ways = braking.jerk_limited.ways
             rest = all(way is not None or self.v[i] == 0.0 for i, way in enumerate(ways))
             time = braking.time + self._dt
-            rest = braking.jerk_limited.place(time, self.x) and rest
+            rest = braking.jerk_limited.positions(time, self.x) and rest
             self._task = replace(braking, time=time)
         if not rest:
             return None

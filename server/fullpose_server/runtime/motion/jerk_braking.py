@@ -43,7 +43,7 @@ class JerkBraking:
     fastest: bool
     given_way: bool
 
-    def place(self, time: float, x: Array) -> bool:
+    def positions(self, time: float, x: Array) -> bool:
         """x (4,) <- the positions [rad] `time` [s] on, of the frames that have a way; whether all of them rest."""
         rest = True
         for i, way in enumerate(self.ways):
