@@ -20,19 +20,32 @@ class FileError(ServerError):
         value: str | None = None,
         unit: str = "line",
         column_word: str = "column",
+        otherwise: tuple[str, str] | None = None,
     ) -> None:
+        """`otherwise`: a field of the reading's options and what it does: a person may have it so."""
         where = [file]
         if line is not None:
             where.append(f"{unit} {line}")
         if column is not None:
             where.append(f"{column_word} {column}")
         found = "" if value is None else f"{value}: "
-        super().__init__(f"{', '.join(where)}: {found}expected {expected}")
+        told = f"{', '.join(where)}: {found}expected {expected}"
+        super().__init__(told if otherwise is None else f"{told}; {' '.join(otherwise)}")
         self.file = file
         self.line = line
         self.column = column
         self.value = value
         self.expected = expected
+        self.otherwise = otherwise
+        self._told = told
+
+    @property
+    def for_command_line(self) -> str:
+        """The message with the option of that field's name: `--bridge-gaps` for `bridge_gaps`."""
+        if self.otherwise is None:
+            return self._told
+        field, does = self.otherwise
+        return f"{self._told}; --{field.replace('_', '-')} {does}"
 
 
 class NotFoundError(ServerError):

@@ -12,7 +12,7 @@ import typer
 
 from fullpose.errors import SolverError
 from fullpose_server.cli._exit import BAD_INPUT, fail
-from fullpose_server.errors import ServerError
+from fullpose_server.errors import FileError, ServerError
 
 ORDER = (
     *(
@@ -55,6 +55,8 @@ def main() -> None:
     """Entry point. Exit status: 0 done, 2 bad input, 3 not feasible within the limits."""
     try:
         build()()
+    except FileError as error:
+        fail(error.for_command_line)
     except (ServerError, SolverError) as error:
         fail(str(error))
     except KeyboardInterrupt:

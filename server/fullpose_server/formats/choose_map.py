@@ -76,7 +76,8 @@ def _as_told(tables: tuple[Table, ...], text: str) -> Choice:
 
 
 def _assumed(profile: Profile) -> str:
-    return f"the axes are assumed to be {profile.axes}, as profile {profile.name} has it: --convention says others"
+    taken = f"the axes are assumed to be {profile.axes}, as profile {profile.name} has it"
+    return f"{taken}: give the convention if they are others"
 
 
 def _given(tables: tuple[Table, ...], convention: Convention | None, profile: Profile) -> Choice:
@@ -148,8 +149,8 @@ def _nothing_fits(table: Table, convention: Convention | None) -> FileError:
         if each.guessed and each.bind(table) is not None:
             return _other_axes(table, each, convention)
     if find(table, ("time_s",)) is None:
-        expected = f"a column time_s among {listing(table.names)}, or a --profile that says which columns are what"
-        return table.error(expected, "time_s")
+        says = ("profile", "says which columns are what")
+        return table.error(f"a column time_s among {listing(table.names)}", "time_s", otherwise=says)
     own = profiles["fullpose-ned" if convention is Convention.NED else "fullpose"]
     q = profiles["fullpose-quaternion"]
     nearer = q if len(q.missing(table)) < 4 else own

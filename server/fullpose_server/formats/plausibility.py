@@ -14,10 +14,17 @@ from fullpose.flight import shortest
 from fullpose_server.formats.caution import Caution
 from fullpose_server.formats.column_map import AngleUnit, EulerMap, TimeMap
 
-SENTINELS = (9999.0, 999.0, 99999.0, 655.35, 6553.5, 65535.0, 327.67, 3276.7, 32767.0, 2147483647.0)  # of either sign
+SENTINELS = (  # of either sign
+    *(999.0, 9999.0, 99999.0, 655.35, 6553.5, 65535.0),
+    *(327.67, 327.68, 3276.7, 3276.8, 32767.0, 32768.0, 2147483647.0, 2147483648.0),
+)
 ABSURD_DEG = 1e6  # no column of angles counts so many turns
 HUGE = 1e12  # what is beyond is a code for "no value"
 FASTEST_DEG_S = 3600.0  # of a body: ten turns a second
+LEAST_JUMP_DEG = 10.0  # to a code, from the samples around it
+MANY_STEPS = 20.0  # ... and so many times what the column usually moves from one to the next
+LEAST_RAD = 0.0017  # a tenth of a degree: what stays within it does not matter
+WHOLE_NUMBERS = 20  # different ones, in a column without any fraction, that centidegrees are seen by
 SLOW_STEP_S = 0.25  # a median step from here on is looked at
 SLOW_RATE_DEG_S = 1.0  # ... where nothing turns faster, up to a second
 QUICK_STEP_S = 2e-5  # ... and up to here
@@ -62,6 +69,7 @@ def angle_cautions(angles: Angles) -> Iterator[Caution]:
     yield from _pitch(angles)
     if angles.how.unit is AngleUnit.DEG:
         yield from _radians(angles)
+        yield from _centidegrees(angles)
 
 
 def _sentinels(angles: Angles, column: int) -> Iterator[Caution]:
@@ -71,19 +79,22 @@ def _sentinels(angles: Angles, column: int) -> Iterator[Caution]:
     for sentinel in SENTINELS:
         coded |= np.abs(size - sentinel) <= 1e-9 * sentinel
     rows = np.flatnonzero(coded)
+    if rows.size == values.size and np.ptp(values) == 0.0:
+        yield angles.at("sentinel", column, 0, "a code for no value, not an angle (every sample)")
     if not rows.size or rows.size == values.size:
         return
-    usual = float(np.median(values[~coded]))
-    far = [int(row) for row in rows if abs(float(values[row]) - usual) > 180.0 and _alone(values, int(row))]
+    usual = float(np.median(np.abs(np.diff(values))))
+    least = max(LEAST_JUMP_DEG, MANY_STEPS * usual)
+    far = [int(row) for row in rows if _alone(values, int(row), least)]
     if far:
         more = f" ({len(far)} such samples)" if len(far) > 1 else ""
         yield angles.at("sentinel", column, far[0], f"a code for no value, not an angle{more}")
 
 
-def _alone(values: Array, row: int) -> bool:
+def _alone(values: Array, row: int, least: float) -> bool:
     """Whether a value is no neighbour of the one before it or after it, where these differ from it."""
     near = [float(values[k]) for k in (row - 1, row + 1) if 0 <= k < len(values) and values[k] != values[row]]
-    return all(abs(value - float(values[row])) > 90.0 for value in near)
+    return all(abs(value - float(values[row])) > least for value in near)
 
 
 def _absurd(angles: Angles, column: int) -> Iterator[Caution]:
@@ -117,19 +128,31 @@ def _quarter(unit: AngleUnit) -> str:
 
 
 def _radians(angles: Angles) -> Iterator[Caution]:
-    """Radians in columns of degrees: the pitch inside +-pi / 2 and another inside +-2 pi, or all that moves so."""
+    """Radians in columns of degrees: a pitch inside +-pi / 2; where none moves the third angle inside +-2 pi, and where
+    that does not move either the first."""
     peaks = [float(np.max(np.abs(values))) for values in angles.values]
     moving = [float(np.ptp(values)) > _STILL for values in angles.values]
     small = [k for k in range(3) if moving[k] and peaks[k] <= _RADIAN_PEAK[k]]
-    pitch = 1 in small or not moving[1]
-    if not small or not pitch or max(peaks[k] for k in small) <= 0.02:
+    telling = next((k for k in (1, 2, 0) if moving[k]), None)
+    if telling not in small or max(peaks[k] for k in small) <= LEAST_RAD:
         return
-    if len(small) >= 2 or (len(small) == sum(moving) and peaks[1] <= _RADIAN_PEAK[1] and max(peaks) <= _RADIAN_PEAK[0]):
-        # One that turns on and on leaves 2 pi, and is in radians with the others where its steps are small as such.
-        for k in [k for k in range(3) if k in small or (len(small) >= 2 and _quiet(angles.values[k]))]:
-            row = int(np.argmax(np.abs(angles.values[k])))
-            text = f"the column stays within {peaks[k]:.4g}: if it is in radians, say so (--profile), or convert it"
-            yield angles.at("angle-unit", k, row, text)
+    # One that turns on and on leaves 2 pi, and is in radians with the others where its steps are small as such.
+    for k in [k for k in range(3) if k in small or (len(small) >= 2 and _quiet(angles.values[k]))]:
+        row = int(np.argmax(np.abs(angles.values[k])))
+        text = f"the column stays within {peaks[k]:.4g}: if it is in radians, say so in a profile, or convert it"
+        yield angles.at("angle-unit", k, row, text)
+
+
+def _centidegrees(angles: Angles) -> Iterator[Caution]:
+    """Centidegrees in columns of degrees: whole numbers, many of them, in all that moves."""
+    moving = [k for k in range(3) if float(np.ptp(angles.values[k])) > _STILL]
+    if not moving or any(np.any(angles.values[k] != np.round(angles.values[k])) for k in moving):
+        return
+    k = max(moving, key=lambda each: float(np.ptp(angles.values[each])))
+    if np.unique(angles.values[k]).size >= WHOLE_NUMBERS:
+        row = int(np.argmax(np.abs(angles.values[k])))
+        text = "whole numbers alone: if they are centidegrees, say so in a profile; else the record is coarse"
+        yield angles.at("angle-unit", k, row, text)
 
 
 def _quiet(values: Array) -> bool:

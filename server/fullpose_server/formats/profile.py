@@ -5,7 +5,7 @@ import tomllib
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
@@ -24,8 +24,10 @@ from fullpose_server.formats.column_map import (
 )
 from fullpose_server.formats.importers.table import Table, unit_in_name
 from fullpose_server.formats.trajectory import Convention
-from fullpose_server.formats.units import angle_unit, time_unit
+from fullpose_server.formats.units import angle_unit, is_other, time_unit
+from fullpose_server.formats.visible import visible
 
+Unit = TypeVar("Unit", TimeUnit, AngleUnit)
 # A column by the names that it goes by; one name may be given as a text.
 Spellings = Annotated[
     tuple[ColumnName, ...],
@@ -121,17 +123,32 @@ def in_axes(order: Order, of: Convention, to: Convention) -> Order:
 
 
 def stamp_unit(table: Table, name: str) -> TimeUnit | None:
-    """The unit of time that a file gives a column: said, or at the end of its name (`t_ms`)."""
-    return time_unit(table.unit(name)) or time_unit(_ending(name))
+    """The unit of time that a file gives a column: said, or at the end of its name (`t_ms`). Raises `FileError`."""
+    if is_other(table.unit(name), of_time=True):
+        raise table.error("a stamp in s, ms, us, ns, min or h", name, f"in {visible(str(table.unit(name)))}")
+    return _agreed(table, name, time_unit(table.unit(name)), time_unit(_ending(name)))
 
 
 def shared_angle_unit(table: Table, names: list[str]) -> AngleUnit | None:
-    """The unit of angle that a file gives three columns. Raises `FileError` where it gives them several."""
-    units = {unit: name for name in names if (unit := angle_unit(table.unit(name)) or angle_unit(_ending(name)))}
+    """The unit of angle that a file gives three columns. Raises `FileError` where it gives them several, or one that
+    is not read."""
+    units: dict[AngleUnit, str] = {}
+    for name in names:
+        if is_other(table.unit(name), of_time=False):
+            raise table.error("an angle in deg, rad or centideg", name, f"in {visible(str(table.unit(name)))}")
+        if (unit := _agreed(table, name, angle_unit(table.unit(name)), angle_unit(_ending(name)))) is not None:
+            units[unit] = name
     if len(units) > 1:
         said = ", ".join(f"{name} in {unit}" for unit, name in units.items())
         raise table.error("three angles in one unit", value=said)
     return next(iter(units), None)
+
+
+def _agreed(table: Table, name: str, said: Unit | None, named: Unit | None) -> Unit | None:
+    """The unit that a column is said to have, or is named by; they may not differ."""
+    if said is not None and named is not None and said != named:
+        raise table.error("one unit", name, f"in {said}, named by {named}")
+    return said or named
 
 
 def find(table: Table, spellings: Spellings) -> str | None:

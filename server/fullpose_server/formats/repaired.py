@@ -66,7 +66,12 @@ def with_samples_between(
         return time, dict(loaded), []
     index = np.concatenate([[0.0], *_fractions(parts)])
     at = np.arange(time.size, dtype=float)
-    columns: Loaded = {name: np.interp(index, at, np.asarray(column, float)) for name, column in loaded.items()}
+    columns: Loaded = {}
+    for name, given in loaded.items():
+        column = np.asarray(given, float)
+        if name in how.columns and all(name != each for each, _ in counted):  # 359 and 1: by 0, not by 180
+            column = np.unwrap(column, period=TURN_DEG * degree)
+        columns[name] = np.interp(index, at, column)
     name, step = max(counted, key=lambda pair: float(pair[1].max()))
     row = int(np.argmax(step > 2.0 * FINEST_STEP_DEG))
     line = table.line_of(row + 1)
@@ -83,7 +88,9 @@ def _fractions(parts: Integers) -> list[Array]:
 
 
 def _jumps(step: Array) -> bool:
-    """Whether a column wraps: some of its steps are almost a full turn, and the others are small."""
+    """Whether a column wraps: some of its steps are almost a full turn, and those next to them are small."""
     near = np.abs(step - TURN_DEG * np.round(step / TURN_DEG))
     large = step > 2.0 * FINEST_STEP_DEG
+    if (large[1:] & large[:-1]).any():  # 330 from each sample to the next are 330
+        return False
     return bool(large.any() and (np.round(step[large] / TURN_DEG) >= 1).all() and near[large].max() < FINEST_STEP_DEG)

@@ -18,15 +18,15 @@ def of_source(tables: tuple[Table, ...], source: str | None) -> tuple[Table, ...
         return tuple(table for table in tables if not table.on_request) or tables
     found = tuple(table for table in tables if table.name == source)
     if not found:
-        raise FileError(tables[0].file, f"a source among {listed(tables)}", value=f"--source {visible(source)}")
+        raise FileError(tables[0].file, f"a source among {listed(tables)}", value=visible(source))
     return found
 
 
 def check_one(fitting: Sequence[Table]) -> None:
     """Raise `FileError` where several attitudes could be meant: which of them is nobody's guess."""
     if len(fitting) > 1:
-        expected = f"one attitude; choose it with --source: {listed(fitting)}"
-        raise FileError(fitting[0].file, expected, value=f"{len(fitting)} attitudes")
+        takes = ("source", f"takes one of: {listed(fitting)}")
+        raise FileError(fitting[0].file, "one attitude", value=f"{len(fitting)} attitudes", otherwise=takes)
 
 
 def listed(tables: Sequence[Table]) -> str:

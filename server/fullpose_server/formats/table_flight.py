@@ -40,16 +40,16 @@ def flight_of(table: Table, columns: ColumnMap, options: ReadOptions = AS_IT_IS)
     if not loaded[columns.time.column].size:
         raise FileError(table.file, "at least one row of samples after the header")
     _check_finite(table, loaded, columns)
-    cautions = list(table.cautions)
+    cautions = [each for each in table.cautions if each.column is None or each.column in columns.columns]
     if options.drop_duplicates:
         table, loaded, dropped = without_duplicates(table, loaded, columns.time.column)
         cautions += dropped
     time = stamps(loaded[columns.time.column], columns.time)
     if found := bad_time(time):
         row, expected = found
-        if "twice" in expected:
-            expected += " (--drop-duplicates keeps the first)"
-        raise table.error(expected, columns.time.column, shortest(float(loaded[columns.time.column][row])), row)
+        keeps = ("drop_duplicates", "keeps the first") if "twice" in expected else None
+        value = shortest(float(loaded[columns.time.column][row]))
+        raise table.error(expected, columns.time.column, value, row, keeps)
     cautions += _checked_gaps(table, time, options)
     if columns.euler is not None:
         cautions += angle_cautions(angles_of(table, loaded, columns.euler))
@@ -63,7 +63,7 @@ def flight_of(table: Table, columns: ColumnMap, options: ReadOptions = AS_IT_IS)
     cautions += time_cautions(time, turned, columns.time)
     cautions += motion_cautions(time, turned, columns.attitude, table.line_of, table.row_word)
     if options.strict and (doubts := [each for each in cautions if each.code not in ASKED_FOR]):
-        raise FileError(table.file, f"a flight without warnings (--strict), not: {doubts[0].message}", line=None)
+        raise FileError(table.file, f"a flight without warnings, not: {doubts[0].message}", line=None)
     taken = Taken(table.format, "", table.name, statement(columns))
     return Trajectory(time, q, columns.axes, tuple(cautions), taken)
 
@@ -86,8 +86,8 @@ def _checked_gaps(table: Table, time: Array, options: ReadOptions) -> list[Cauti
     long = [hole for hole in found if hole.steps >= LONG]
     if long and not options.bridge_gaps:
         more = f", {len(long)} such gaps" if len(long) > 1 else ""
-        expected = f"samples all the way: none from {long[0]}{more}; --bridge-gaps (bridge_gaps) interpolates"
-        raise table.error(expected, row=long[0].row)
+        expected = f"samples all the way: none from {long[0]}{more}"
+        raise table.error(expected, row=long[0].row, otherwise=("bridge_gaps", "interpolates"))
     listed = "; ".join(str(hole) for hole in found[:MOST_LISTED])
     if not found:
         return []

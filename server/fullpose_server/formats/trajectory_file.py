@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fullpose_server.formats.caution import Caution
-from fullpose_server.formats.choose_map import choose
+from fullpose_server.formats.choose_map import Choice, choose
 from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds
 from fullpose_server.formats.importers.registry import importer_of, read_tables
 from fullpose_server.formats.importers.table import Table
@@ -33,7 +33,11 @@ def read_trajectory(
 
 def flight_in(tables: tuple[Table, ...], options: ReadOptions = AS_IT_IS) -> Trajectory:
     """The flight in the tables of a file. Raises as `read_trajectory`."""
-    chosen = choose(tables, options)
+    return flight_chosen(choose(tables, options), options)
+
+
+def flight_chosen(chosen: Choice, options: ReadOptions = AS_IT_IS) -> Trajectory:
+    """The flight of a table whose columns are chosen. Raises as `read_trajectory`."""
     flight = flight_of(chosen.table, chosen.columns, options)
     taken = replace(flight.taken, profile=chosen.profile, statement=f"{flight.taken.statement} ({chosen.reason})")
     warnings = flight.warnings

@@ -19,7 +19,7 @@ def _deceives(sign: str) -> bool:
     if sign.isascii():
         return not sign.isprintable()
     kind = unicodedata.category(sign)
-    return kind in ("Cf", "Cc", "Cs", "Co", "Zs", "Zl", "Zp") or ord(sign) in _FULL_WIDTH or sign in "、。‚٫"
+    return kind in ("Cf", "Cc", "Cs", "Co", "Zs", "Zl", "Zp") or ord(sign) in _FULL_WIDTH or sign in "、。‚٫−"
 
 
 def _escape(sign: str) -> str:

@@ -157,7 +157,7 @@ def test_what_is_no_gap(time: np.ndarray) -> None:
 def test_duplicates_are_dropped_on_request(tmp_path: Path) -> None:
     time = np.insert(TIME, 50, TIME[50])
     angles = np.insert(ANGLES, 50, ANGLES[50], axis=0)
-    with pytest.raises(FileError, match="--drop-duplicates"):
+    with pytest.raises(FileError, match="; drop_duplicates keeps the first"):
         read(tmp_path, time, angles)
     flight = read(tmp_path, time, angles, drop_duplicates=True)
     np.testing.assert_array_equal(flight.time, TIME)

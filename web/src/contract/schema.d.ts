@@ -3246,6 +3246,11 @@ export interface components {
             profile: string | null;
             /** Profiles */
             profiles: components["schemas"]["NamedProfile"][];
+            /**
+             * Remedy
+             * @description The field by which it may be read all the same
+             */
+            remedy: ("bridge_gaps" | "drop_duplicates" | "profile" | "source") | null;
             /** Table */
             table: string;
             /** Tables */

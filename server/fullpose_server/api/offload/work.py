@@ -132,7 +132,7 @@ def _read_file(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]
 
 
 def _preview(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
-    from fullpose_server.formats.reading_preview import reading_preview  # pages' thinning, for those who look first
+    from fullpose_server.api.offload.reading import reading_preview  # pages' thinning, for those who look first
 
     asked = PreviewRequest(**values)
     document = reading_preview(Path(asked.source), asked.file, asked.bounds, asked.options, asked.points)

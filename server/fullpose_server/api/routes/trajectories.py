@@ -25,11 +25,10 @@ from fullpose_server.api.schemas.base import Name, Notice
 from fullpose_server.api.schemas.diagnosis import DiagnosisOut
 from fullpose_server.api.schemas.labels import LabelsIn
 from fullpose_server.api.schemas.trajectories import ToleranceEffect, TrajectoryOut, TrajectoryPreview
+from fullpose_server.api.thinned import thinned_flight
 from fullpose_server.api.uploads import FORM, announced, receive_body, receive_form
 from fullpose_server.errors import InUseError
 from fullpose_server.formats.flight_folder import FlightFacts, read_arrays
-from fullpose_server.formats.trajectory import euler_deg
-from fullpose_server.pages.thin import thin
 from fullpose_server.store.keyset import Key
 from fullpose_server.store.tables import TrajectoryRow
 
@@ -140,18 +139,8 @@ def preview_trajectory(
     """The flight thinned to about `points` samples, for plots."""
     row = services.trajectories.get(sha256)
     time_s, q = read_arrays(services.trajectories.folder(sha256), row.samples)
-    euler = euler_deg(q)  # of all samples: between those that are kept, whole turns may be
-    rows = thin(time_s.size, points, euler)
-    yaw, pitch, roll = euler[rows].T
-    return TrajectoryPreview.model_construct(
-        sha256=sha256,
-        samples=int(time_s.size),
-        time_s=time_s[rows].tolist(),
-        yaw_deg=yaw.tolist(),
-        pitch_deg=pitch.tolist(),
-        roll_deg=roll.tolist(),
-        q=[tuple(row) for row in q[rows].tolist()],
-    )
+    shown = thinned_flight(time_s, q, points)
+    return TrajectoryPreview.model_construct(sha256=sha256, samples=int(time_s.size), **shown)
 
 
 @router.get("/{sha256}/tolerance", responses=BUSY)

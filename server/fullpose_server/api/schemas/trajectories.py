@@ -101,6 +101,9 @@ class ReadingPreview(Wire):
     profile: str | None = Field(description="That was taken; null where none fits, empty where the columns were given")
     columns: ColumnMap | None
     problem: str | None = Field(description="Why it makes no flight as it is read")
+    remedy: Literal["bridge_gaps", "drop_duplicates", "profile", "source"] | None = Field(
+        description="The field by which it may be read all the same"
+    )
     flight: ReadFlight | None
 
 

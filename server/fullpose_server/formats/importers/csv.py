@@ -21,6 +21,7 @@ from fullpose_server.errors import FileError
 from fullpose_server.formats.caution import Caution
 from fullpose_server.formats.importers.columns import UNBOUNDED, Bounds, Filling, check_columns, check_rows
 from fullpose_server.formats.importers.dialect import HEAD_LINES, WHITE, Dialect, is_comment, is_number, sniff
+from fullpose_server.formats.importers.last_line import cut_off
 from fullpose_server.formats.importers.row_stream import RowStream
 from fullpose_server.formats.importers.table import Columns, Table
 from fullpose_server.formats.importers.text_source import TextSource, text_source
@@ -38,6 +39,7 @@ class _Text:
     dialect: Dialect
     bounds: Bounds
     integers: frozenset[str]  # columns that are whole numbers too long for doubles
+    left_out: int = 0  # the line that a cut file breaks off in; 0: none
 
     @property
     def file(self) -> str:
@@ -57,7 +59,9 @@ def read_tables(path: Path, file: str, bounds: Bounds = UNBOUNDED) -> tuple[Tabl
         for k, name in enumerate(dialect.names)
         if head and all(len(row) > k and _LONG.fullmatch(row[k].strip()) for row in head)
     }
-    text = _Text(source, dialect, bounds, frozenset(integers))
+    last = cut_off(source, dialect)
+    text = _Text(source, dialect, bounds, frozenset(integers), last.line if last is not None and last.dropped else 0)
+    said = [Caution("invisible", each) for each in dialect.said] + ([] if last is None else [last.caution])
     table = Table(
         file=file,
         format="csv",
@@ -67,7 +71,7 @@ def read_tables(path: Path, file: str, bounds: Bounds = UNBOUNDED) -> tuple[Tabl
         line_of=partial(_line_of, text),
         row_word="line",
         header_line=dialect.header_line or None,
-        cautions=tuple(Caution("invisible", said) for said in dialect.said),
+        cautions=tuple(said),
         head=head,
     )
     return (table,)
@@ -88,7 +92,7 @@ def _first_lines(source: TextSource) -> list[str]:
 def _load(text: _Text, wanted: Sequence[str]) -> Columns:
     """Arrow first on the file as it is, then on cleaned rows, then the slow pass that names the line."""
     reasons = []
-    for cleaned in (False, True) if text.source.plain and text.dialect.plain else (True,):
+    for cleaned in (False, True) if text.source.plain and text.dialect.plain and not text.left_out else (True,):
         try:
             return _columns(text, tuple(wanted), cleaned)
         except pa.ArrowInvalid as error:
@@ -102,7 +106,7 @@ def _columns(text: _Text, wanted: tuple[str, ...], cleaned: bool) -> dict[str, A
     """The wanted columns (n,), block by block, so that a file of too many rows is left at the first one too many."""
     dialect = text.dialect
     names = [*dialect.names, ""] if dialect.trailing else list(dialect.names)
-    where: Any = RowStream(text.source, dialect) if cleaned else text.source.path
+    where: Any = RowStream(text.source, dialect, to_end=not text.left_out) if cleaned else text.source.path
     doubles = tuple(name for name in wanted if name not in text.integers)
     filling = Filling(doubles)
     stamps: dict[str, list[Integers]] = {name: [] for name in wanted if name in text.integers}
@@ -142,7 +146,7 @@ def _rows(text: _Text) -> Iterator[tuple[int, list[str]]]:
 
     def lines() -> Iterator[str]:
         for number, line in enumerate(text.source.lines(), start=1):
-            if number > dialect.skip and line.strip() and not is_comment(line):
+            if number > dialect.skip and number != text.left_out and line.strip() and not is_comment(line):
                 last[0] = number
                 yield without_invisible(line)
 

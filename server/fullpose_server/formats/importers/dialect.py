@@ -74,7 +74,7 @@ def is_number(text: str, decimal: str = ".") -> bool:
         float(text)
     except ValueError:
         return False
-    return "_" not in text
+    return "_" not in text and text.isascii()
 
 
 def sniff(lines: Sequence[str], file: str) -> Dialect:

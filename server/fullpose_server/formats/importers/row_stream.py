@@ -15,12 +15,13 @@ _BLANK_LINES = re.compile(r"^\r?\n", re.MULTILINE)
 
 
 class RowStream:
-    """A file to read from, as Arrow wants one: the rows of `source` after the header."""
+    """A file to read from, as Arrow wants one: the rows of `source` after the header; `to_end`: to its very end, else
+    without a last line that does not end."""
 
     closed = False
 
-    def __init__(self, source: TextSource, dialect: Dialect) -> None:
-        self._blocks = _blocks(source, dialect)
+    def __init__(self, source: TextSource, dialect: Dialect, *, to_end: bool = True) -> None:
+        self._blocks = _blocks(source, dialect, to_end)
         self._ready = b""
 
     def read(self, size: int = -1) -> bytes:
@@ -50,9 +51,11 @@ class RowStream:
         return False
 
 
-def _blocks(source: TextSource, dialect: Dialect) -> Iterator[bytes]:
+def _blocks(source: TextSource, dialect: Dialect, to_end: bool) -> Iterator[bytes]:
     left = dialect.skip
     for text in source.blocks():
+        if not to_end and not text.endswith("\n"):
+            return
         while left and text:
             _, newline, text = text.partition("\n")
             left -= 1 if newline else left

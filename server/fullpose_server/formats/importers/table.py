@@ -57,11 +57,16 @@ class Table:
         return self.units.get(name) or unit_in_name(name)[1]
 
     def error(
-        self, expected: str, column: str | None = None, value: str | None = None, row: int | None = None
+        self,
+        expected: str,
+        column: str | None = None,
+        value: str | None = None,
+        row: int | None = None,
+        otherwise: tuple[str, str] | None = None,
     ) -> FileError:
         """A `FileError` at a row, counted from 0, or in the header."""
-        line = self.header_line if row is None else self.line_of(row)
-        return FileError(self.file, expected, line=line, column=column, value=value, unit=self.row_word)
+        line, word = self.header_line if row is None else self.line_of(row), self.row_word
+        return FileError(self.file, expected, line=line, column=column, value=value, unit=word, otherwise=otherwise)
 
 
 def table_of(

@@ -44,7 +44,7 @@ def test_a_bag(tmp_path: Path, store: str, kind: str) -> None:
 @pytest.mark.parametrize("store", ["ros1", "sqlite", "mcap"])
 def test_a_bag_of_several_topics_is_for_a_person_to_choose(tmp_path: Path, store: str) -> None:
     path = bag(tmp_path, store, TWO)
-    with pytest.raises(FileError, match=r"2 attitudes: expected one .*--source: /imu/data, /odom$"):
+    with pytest.raises(FileError, match=r"2 attitudes: expected one .*source takes one of: /imu/data, /odom$"):
         read_trajectory(path)
     flight = read_trajectory(path, options=ReadOptions(source="/odom"))
     assert flight.taken.table == "/odom"
@@ -93,7 +93,7 @@ def run(path: Path, rig: str) -> np.ndarray:
 
 def test_a_run_s_attitude_is_that_of_its_frames(tmp_path: Path) -> None:
     rows = run(tmp_path / "run.mcap", "vertical-4")
-    with pytest.raises(FileError, match=r"--source: target, commanded, measured$"):
+    with pytest.raises(FileError, match=r"source takes one of: target, commanded, measured$"):
         read_trajectory(tmp_path / "run.mcap")
     letters = ["xyz"[axis] for axis in builtin_rigs()["vertical-4"].geometry.axes]
     for source, field in (("commanded", "demand"), ("measured", "measured")):

@@ -44,7 +44,7 @@ def test_a_table_of_columns(tmp_path: Path, kind: str, columns: dict[str, np.nda
 def test_two_attitudes_are_for_a_person_to_choose(tmp_path: Path, kind: str) -> None:
     groups = {"first": tables.COLUMNS, "second": tables.QUATERNION}
     path = WRITERS[kind](tmp_path / "file", groups)
-    with pytest.raises(FileError, match=r"2 attitudes: expected one .*--source: first, second$"):
+    with pytest.raises(FileError, match=r"2 attitudes: expected one .*source takes one of: first, second$"):
         read_trajectory(path, options=NED)
     flight = read_trajectory(path, options=ReadOptions(convention=Convention.NED, source="second"))
     assert flight.taken.table == "second"

@@ -35,7 +35,7 @@ def test_px4_ulog_takes_the_estimate_and_others_by_request(tmp_path: Path) -> No
 
 def test_px4_ulog_of_two_estimators_is_for_a_person_to_choose(tmp_path: Path) -> None:
     path = logs.ulog(tmp_path / "log", ("vehicle_attitude", "vehicle_attitude"))
-    with pytest.raises(FileError, match=r"--source: vehicle_attitude, vehicle_attitude/1$"):
+    with pytest.raises(FileError, match=r"source takes one of: vehicle_attitude, vehicle_attitude/1$"):
         read_trajectory(path)
     assert read_trajectory(path, options=ReadOptions(source="vehicle_attitude/1")).time.size == logs.SAMPLES
 
@@ -60,7 +60,9 @@ def test_mavlink_tlog(tmp_path: Path, quaternion: bool, v1: bool) -> None:
 
 def test_mavlink_tlog_of_two_vehicles_is_for_a_person_to_choose(tmp_path: Path) -> None:
     path = logs.tlog(tmp_path / "log", ((1, 1), (2, 1)))
-    with pytest.raises(FileError, match=r"2 attitudes: expected one .*--source: 1\.1/ATTITUDE, 2\.1/ATTITUDE$"):
+    with pytest.raises(
+        FileError, match=r"2 attitudes: expected one .*source takes one of: 1\.1/ATTITUDE, 2\.1/ATTITUDE$"
+    ):
         read_trajectory(path)
     flight = read_trajectory(path, options=ReadOptions(source="2.1/ATTITUDE"))
     assert attitude_error_deg(flight, logs.NED, "ned") < FLOAT32_DEG

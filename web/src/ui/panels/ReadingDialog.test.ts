@@ -17,11 +17,13 @@ const REFUSED: ReadingPreview = {
   profile: null,
   columns: null,
   problem: "2 attitudes",
+  remedy: "source",
   flight: null,
 };
 const READ: ReadingPreview = {
   ...REFUSED,
   problem: null,
+  remedy: null,
   flight: {
     samples: 1,
     duration_s: 0,

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from fullpose_server.api.thinned import thinned_flight
 from fullpose_server.errors import FileError
 from fullpose_server.formats.choose_map import choose
 from fullpose_server.formats.importers.columns import Bounds
@@ -10,8 +11,7 @@ from fullpose_server.formats.importers.registry import importer_of, read_tables
 from fullpose_server.formats.importers.table import Table
 from fullpose_server.formats.profile import shipped
 from fullpose_server.formats.read_options import ReadOptions
-from fullpose_server.formats.trajectory import euler_deg
-from fullpose_server.formats.trajectory_file import flight_in
+from fullpose_server.formats.trajectory_file import flight_chosen
 from fullpose_server.formats.visible import visible
 
 MOST_COLUMNS = 200  # that a person looks through
@@ -23,18 +23,20 @@ def reading_preview(path: Path, file: str, bounds: Bounds, options: ReadOptions,
     What does not make a flight is in `problem`: a person can say otherwise. Raises as `read_tables`.
     """
     tables = read_tables(path, file, bounds, importer_of(path, file, file))
-    document = _of_table(tables[0], tables) | {"columns": None, "profile": None, "problem": None, "flight": None}
+    document = _of_table(tables[0], tables) | {
+        "columns": None,
+        "profile": None,
+        "problem": None,
+        "remedy": None,
+        "flight": None,
+    }
     try:
         chosen = choose(tables, options)
         document |= _of_table(chosen.table, tables)
         document |= {"columns": chosen.columns.model_dump(mode="json"), "profile": chosen.profile}
-        flight = flight_in(tables, options)
+        flight = flight_chosen(chosen, options)
     except FileError as error:
-        return document | {"problem": str(error)}
-    q = flight.q
-    euler = euler_deg(q)  # of all samples: between those that are kept, whole turns may be
-    rows = slice(None, None, max(1, len(q) // points))
-    yaw, pitch, roll = euler[rows].T.tolist()
+        return document | {"problem": str(error), "remedy": error.otherwise and error.otherwise[0]}
     return document | {
         "flight": {
             "samples": int(flight.time.size),
@@ -42,11 +44,7 @@ def reading_preview(path: Path, file: str, bounds: Bounds, options: ReadOptions,
             "convention": flight.convention.value,
             "statement": flight.taken.statement,
             "warnings": [caution.to_json() for caution in flight.warnings],
-            "time_s": flight.time[rows].tolist(),
-            "yaw_deg": yaw,
-            "pitch_deg": pitch,
-            "roll_deg": roll,
-            "q": [tuple(row) for row in q[rows].tolist()],
+            **thinned_flight(flight.time, flight.q, points),
         }
     }
 
