@@ -24,7 +24,7 @@ FASTEST_DEG_S = 3600.0  # of a body: ten turns a second
 LEAST_JUMP_DEG = 10.0  # to a code, from the samples around it
 MANY_STEPS = 20.0  # ... and so many times what the column usually moves from one to the next
 LEAST_RAD = 0.0017  # a tenth of a degree: what stays within it does not matter
-WHOLE_NUMBERS = 20  # different ones, in a column without any fraction, that centidegrees are seen by
+DIFFERENT_INTEGERS = 20  # different ones, in a column without any fraction, that centidegrees are seen by
 SLOW_STEP_S = 0.25  # a median step from here on is looked at
 SLOW_RATE_DEG_S = 1.0  # ... where nothing turns faster, up to a second
 QUICK_STEP_S = 2e-5  # ... and up to here
@@ -149,7 +149,7 @@ def _centidegrees(angles: Angles) -> Iterator[Caution]:
     if not moving or any(np.any(angles.values[k] != np.round(angles.values[k])) for k in moving):
         return
     k = max(moving, key=lambda each: float(np.ptp(angles.values[each])))
-    if np.unique(angles.values[k]).size >= WHOLE_NUMBERS:
+    if np.unique(angles.values[k]).size >= DIFFERENT_INTEGERS:
         row = int(np.argmax(np.abs(angles.values[k])))
         text = "whole numbers alone: if they are centidegrees, say so in a profile; else the record is coarse"
         yield angles.at("angle-unit", k, row, text)
