@@ -144,9 +144,9 @@ def _radians(angles: Angles) -> Iterator[Caution]:
 
 
 def _centidegrees(angles: Angles) -> Iterator[Caution]:
-    """Centidegrees in columns of degrees: whole numbers, many of them, in all that moves."""
+    """Centidegrees in columns of degrees: whole numbers, many of them, in all that moves, two columns or three."""
     moving = [k for k in range(3) if float(np.ptp(angles.values[k])) > _STILL]
-    if not moving or any(np.any(angles.values[k] != np.round(angles.values[k])) for k in moving):
+    if len(moving) < 2 or any(np.any(angles.values[k] != np.round(angles.values[k])) for k in moving):
         return
     k = max(moving, key=lambda each: float(np.ptp(angles.values[each])))
     if np.unique(angles.values[k]).size >= DIFFERENT_INTEGERS:
