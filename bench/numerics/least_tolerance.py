@@ -20,7 +20,7 @@ import numpy as np
 
 from bench.machine import machine
 from bench.numerics.infeasible_flights import Case, cases
-from bench.numerics.shooting import reference
+from bench.numerics.least_reference import reference
 from fullpose.plan import PlanOptions, plan
 from fullpose.plan.fallback import Fallback
 from fullpose.plan.least_tolerance import least_tolerance

@@ -5,6 +5,7 @@ Pure: the solutions come from `solve`, the limits from `verify`, so that no meth
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,8 +18,11 @@ from fullpose.kinematics import singularity_measures
 from fullpose.registry import Stepwise, Variant, find_method, method_options, parse_variant
 from fullpose.rig import FRAMES, LIMITS, Rig
 from fullpose.solution import Solution
-from fullpose.solve import solve
+from fullpose.solve import solve_flight
 from fullpose.verify import Verification, verify
+
+if TYPE_CHECKING:
+    from fullpose.plan import Plan
 
 # A sample is exact within 1e-9 deg: a hundred times the rounding of the geodesic error, far below any encoder.
 EXACT_WITHIN = np.deg2rad(1e-9)
@@ -61,6 +65,7 @@ class Row:
     solution: Solution | None = None
     verification: Verification | None = None
     figures: Figures | None = None
+    plan: "Plan | None" = None  # of a method that sees the whole flight
 
 
 def figures(solution: Solution, verification: Verification) -> Figures:
@@ -168,10 +173,10 @@ def _row(
         if clock and isinstance(method, Stepwise) and method.step is not None:
             # The first call loads the kernels, which is no part of a step.
             method.step.stepper(rig, options, None, attitude[0]).block(time[:2], attitude[:2])
-        solution = solve(time, attitude, rig, method.name, options=options, start=start, clock=clock, progress=report)
+        solved = solve_flight(time, attitude, rig, method.name, options, start, clock, report)
     except MethodError as refusal:
         return Row(variant, method.claims_limits, method.source, refusal=str(refusal))
+    solution = solved.solution
     verification = verify(time, solution.angles, rig, attitude)
-    return Row(
-        variant, method.claims_limits, method.source, None, solution, verification, figures(solution, verification)
-    )
+    measured = figures(solution, verification)
+    return Row(variant, method.claims_limits, method.source, None, solution, verification, measured, solved.plan)

@@ -48,13 +48,14 @@ def compare(given: CompareArguments) -> None:
     from fullpose.compare import variants
     from fullpose_server.formats.output_file import write_text
     from fullpose_server.formats.rig_file import find_rig
-    from fullpose_server.planning.make_comparison import make_comparison, within_tolerance
+    from fullpose_server.planning.flown_within import flown_within
+    from fullpose_server.planning.make_comparison import make_comparison
 
     asked = variants([text for text in given.methods.split(",") if text.strip()])
     chosen = find_rig(given.rig).rig
     check_outputs({"--report": given.report, "--page": given.page}, given.flight, given.rig)
     read = read_flight(given.flight, given, chosen, given.start)
-    at, q, told = within_tolerance(read.time, read.q, given.tolerance)
+    told = flown_within(read.time, read.q, given.tolerance, "--tolerance")
     with progress_bar("compare") as bar:
         order = {one.label: k for k, one in enumerate(asked)}
 
@@ -62,8 +63,8 @@ def compare(given: CompareArguments) -> None:
             if bar is not None:
                 bar(order[label] * total + done, len(order) * total)
 
-        made = make_comparison(given.flight.name, at, q, chosen, asked, read.start, given.rate, progress)
-    report = made.report | told | {"input": read.input}
+        made = make_comparison(given.flight.name, told, chosen, asked, read.start, given.rate, progress)
+    report = made.report | {"input": read.input}
     if given.report is not None:
         write_text(given.report, json.dumps(report, indent=2) + "\n")
     if given.page is not None:
@@ -75,9 +76,10 @@ def compare(given: CompareArguments) -> None:
 
 def _table(report: dict[str, Any]) -> str:
     from fullpose_server.formats.report import exact_text
+    from fullpose_server.formats.tolerance_report import advice
 
     rows = [COLUMNS]
-    refusals = []
+    refusals, reasons = [], []
     for method in report["methods"]:
         if method["refusal"] is not None:
             refusals.append(f"{method['label']}: {method['refusal']}")
@@ -95,6 +97,9 @@ def _table(report: dict[str, Any]) -> str:
                 f"{method['step_us']['median']:.2f} us",
             )
         )
+        if method["why"] is not None:
+            sure = f". {method['how_sure']}" if method["how_sure"] and not method["feasible"] else ""
+            reasons.append(f"{method['label']}: {method['why']}{sure}")
     widths = [max(len(row[k]) for row in rows) for k in range(len(COLUMNS))]
     lines = [
         "  ".join([row[0].ljust(widths[0]), *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:], strict=True))])
@@ -105,4 +110,6 @@ def _table(report: dict[str, Any]) -> str:
         heading += f" ({report['resampling']})"
     if "smoothing" in report:
         heading += f", within {report['tolerance_deg']:g} deg: {report['smoothing']}"
-    return "\n".join([heading, *lines, *refusals])
+    advised = advice(report)
+    closing = [] if advised is None else [f"{advised[0].upper()}{advised[1:]} (--tolerance)"]
+    return "\n".join([heading, *lines, *reasons, *refusals, *closing])

@@ -13,7 +13,6 @@ from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import OUT_KINDS, check_outputs
 from fullpose_server.cli._progress import progress_bar
-from fullpose_server.cli._tolerance import within
 
 
 def register(app: typer.Typer) -> None:
@@ -40,13 +39,13 @@ class RemedyArguments(ReadingArguments):
 
 def remedy(asked: RemedyArguments) -> None:
     """Say what was changed, write OUT. Exit 2: bad input, OUT untouched. Exit 3: this remedy is not enough."""
-    from fullpose.attitude import dcm_from_quaternion
     from fullpose.verify import verify
     from fullpose_server.errors import NoRemedyError
     from fullpose_server.formats.output_file import write_text
     from fullpose_server.formats.report import make_report, margins_report, verdict_report
     from fullpose_server.formats.rig_file import find_rig
     from fullpose_server.formats.solution_file import write_solution
+    from fullpose_server.planning.flown_within import flown_within
     from fullpose_server.planning.remedy import find_remedy, refuse_noise, tolerated
     from fullpose_server.planning.remedy_request import RemedyRequest
 
@@ -56,13 +55,13 @@ def remedy(asked: RemedyArguments) -> None:
     request.check(chosen)
     check_outputs({"--out": asked.out, "--report": asked.report}, flight, asked.rig)
     read = read_flight(flight, asked, chosen, asked.start)
-    attitude = dcm_from_quaternion(read.q)
-    told = within(read, attitude, asked.tolerance)
+    with progress_bar("tolerance"):
+        told = flown_within(read.time, read.q, asked.tolerance, "--tolerance")
     with progress_bar(kind) as progress:
         try:
-            refuse_noise(request, told.flight.time, told.attitude, chosen)
+            refuse_noise(request, told.time, told.attitude, chosen)
             found = find_remedy(
-                request, told.flight.time, told.attitude, chosen, start=read.start, progress=progress,
+                request, told.time, told.attitude, chosen, start=read.start, progress=progress,
                 smoothed=told.smoothed,
             )  # fmt: skip
         except NoRemedyError as error:

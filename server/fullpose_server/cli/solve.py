@@ -13,12 +13,14 @@ from fullpose_server.cli._exit import DONE, NOT_FEASIBLE, fail, say
 from fullpose_server.cli._flight import read_flight
 from fullpose_server.cli._outputs import OUT_KINDS, check_outputs
 from fullpose_server.cli._progress import progress_bar
-from fullpose_server.cli._tolerance import Within, within
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fullpose.plan import Plan
     from fullpose.rig import Rig
     from fullpose.solution import Solution
+    from fullpose_server.planning.flown_within import Within
 
 METHODS = (
     "plan, preview, exact, alm, dwln, lagrange, weighted, gradient_projection, fixed_joint, clamped, follow_up, "
@@ -57,16 +59,18 @@ def solve(asked: SolveArguments) -> None:
     from fullpose_server.formats.rig_file import find_rig
     from fullpose_server.formats.solution_file import write_solution
     from fullpose_server.formats.tolerance_report import advice
+    from fullpose_server.planning.flown_within import flown_within
 
     flight, method = asked.flight, asked.method
     chosen = find_rig(asked.rig).rig
     check_outputs({"--out": asked.out, "--report": asked.report, "--plot": asked.plot}, flight, asked.rig)
     options = _options(method, asked.option or [])  # first: a file may take long to read
     read = read_flight(flight, asked, chosen, asked.start)
-    attitude = dcm_from_quaternion(read.q)
-    told = within(read, attitude, asked.tolerance)
-    solution, planned = _solve(told, chosen, method, options)
-    made = told.reported(make_report(solution, verify(solution.time, solution.angles, chosen, attitude)))
+    with progress_bar("tolerance"):
+        told = flown_within(read.time, read.q, asked.tolerance, "--tolerance")
+    solution, planned = _solve(told, read.start, chosen, method, options)
+    given = dcm_from_quaternion(read.q)
+    made = told.reported(make_report(solution, verify(solution.time, solution.angles, chosen, given)))
     solution = told.measured(solution)
     made["warnings"] = [{"code": c.code, "message": c.message} for c in read.warnings]
     made["input"] = read.input
@@ -111,19 +115,21 @@ def _options(method: str, texts: list[str]) -> Any:
     return method_options(method, dict(parse_option(text, method) for text in texts))
 
 
-def _solve(told: Within, rig: "Rig", method: str, options: Any) -> tuple["Solution", "Plan | None"]:
+def _solve(
+    told: "Within", start: "NDArray[Any] | None", rig: "Rig", method: str, options: Any
+) -> tuple["Solution", "Plan | None"]:
     """The solution; of method plan the whole plan, too, which says what the verdict rests on."""
     from fullpose.solve import solve_flight
     from fullpose_server.planning.remaining_tolerance import with_remaining
 
     with progress_bar(method) as progress:
         solved = solve_flight(
-            told.flight.time,
+            told.time,
             told.attitude,
             rig,
             method=method,
             options=with_remaining(method, options, told.smoothed),
-            start=told.flight.start,
+            start=start,
             clock=time.perf_counter,
             progress=progress,
         )

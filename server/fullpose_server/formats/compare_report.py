@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from fullpose.compare import EXACT_WITHIN, Failure, Figures, Row
 from fullpose.rig import FRAMES, LIMITS, Rig
-from fullpose_server.formats.report import make_report
+from fullpose_server.formats.report import make_report, verdict_report, why_infeasible, why_not_exact
 
 SCHEMA = "fullpose.comparison/1"
 
@@ -45,7 +45,15 @@ def _method(row: Row, rig: Rig) -> dict[str, Any]:
     }
     if row.solution is None or row.verification is None or row.figures is None:
         return head
-    return {**head, **make_report(row.solution, row.verification), **_figures(row.figures, rig)}
+    report = make_report(row.solution, row.verification)
+    told = report if row.plan is None else report | verdict_report(row.plan)
+    return {
+        **head,
+        **report,
+        **_figures(row.figures, rig),
+        "why": why_infeasible(told) or why_not_exact(told),
+        "how_sure": None if row.plan is None else row.plan.verdict.how_sure,
+    }
 
 
 def _figures(figures: Figures, rig: Rig) -> dict[str, Any]:

@@ -28,7 +28,19 @@ def metrics_table(report: dict[str, Any], keys: dict[str, tuple[str, str]]) -> s
     """A table with one row a method; `keys`: colour and dash of each label."""
     head = "".join(f'<th scope="col" title="{html.escape(tip)}">{html.escape(name)}</th>' for name, tip in HEADINGS)
     rows = "".join(_row(method, keys) for method in report["methods"])
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+    reasons = "".join(
+        f"<dt>{html.escape(method['label'])}</dt><dd>{html.escape(_sentence(method))}</dd>"
+        for method in report["methods"]
+        if method.get("why")
+    )
+    listed = f'<dl class="reasons">{reasons}</dl>' if reasons else ""
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{listed}"
+
+
+def _sentence(method: dict[str, Any]) -> str:
+    """What happens first and what then; of an infeasible plan how sure that is, too."""
+    told = f"{method['why'][0].upper()}{method['why'][1:]}."
+    return f"{told} {method['how_sure']}" if method["how_sure"] and not method["feasible"] else told
 
 
 def _row(method: dict[str, Any], keys: dict[str, tuple[str, str]]) -> str:

@@ -10,7 +10,6 @@ import numpy as np
 
 from fullpose._typing import Array
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_dcm
-from fullpose.compare import EXACT_WITHIN
 from fullpose.errors import MethodError
 from fullpose.lead import lead_in, lead_out
 from fullpose.plan import Plan
@@ -27,7 +26,7 @@ from fullpose.vocabulary import RemedyKind
 from fullpose_server.formats.flight_folder import read_arrays
 from fullpose_server.formats.plan_folder import PlanOrigin, PlanPath, make_plan, rig_hash, write_plan
 from fullpose_server.formats.report import exceeds, make_report, margins_report, verdict_report, why_infeasible
-from fullpose_server.formats.tolerance_report import judged, tolerance_radians, tolerance_report, without_tolerance
+from fullpose_server.planning.flown_within import Within, behind, flown_within
 from fullpose_server.planning.plan_request import PlanRequest
 from fullpose_server.planning.remaining_tolerance import with_remaining
 from fullpose_server.planning.remedy import find_remedy, refuse_noise, tolerated
@@ -35,7 +34,6 @@ from fullpose_server.planning.remedy_request import RemedyRequest
 
 Progress = Callable[[str, int, int], None]  # phase, done, total
 _NONE = np.empty((0, 4))
-EXACT_DEG = math.degrees(EXACT_WITHIN)
 
 
 def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, Any]:
@@ -49,7 +47,7 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     progress("resample", 0, 1)
     given = _given(request)
     if request.remedy is not None:
-        refuse_noise(_asked(request.remedy), given.time, dcm_from_quaternion(given.q), request.rig)
+        refuse_noise(_asked(request.remedy), given.time, given.attitude, request.rig)
     flight = resample(given.time, given.q, request.rate_hz)
     if flight.time.size < 2:
         flight = _held(flight, request.rate_hz)
@@ -61,7 +59,7 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     report["rig"] = request.rig.name
     if made.planned is not None:
         report |= verdict_report(made.planned)
-    report = given.reported(report)
+    report = given.reported_on_top(report)
     if made.remedy.get("kind") == RemedyKind.TOLERANCE and made.remedy["value"]:
         report |= tolerated(made.remedy)
     refusal = why_infeasible(report)
@@ -84,40 +82,15 @@ def make_plan_folder(values: dict[str, Any], progress: Progress) -> dict[str, An
     return result | {"verdict": made.verdict, "margins": shown, "remedy": remedy}
 
 
-@dataclass(frozen=True)
-class _Given:
-    """A stored flight as it is to be brought to the rig's rate: as it was given, or within a tolerance."""
-
-    time: Array  # (n,) [s]
-    q: Array  # (n, 4)
-    tolerance_deg: float | None
-    smoothed: Smoothed | None
-
-    def reported(self, report: dict[str, Any]) -> dict[str, Any]:
-        """The report with what it says of a tolerance; with one, the error is to the flight as it was given."""
-        if self.smoothed is None or self.tolerance_deg is None:
-            return report | without_tolerance(self.time, self.q, report)
-        told = report | tolerance_report(self.smoothed, self.tolerance_deg)
-        # Of what is flown from what was given: the deviation of the flight, and the method's own error on top.
-        return judged(told | {"max_error_deg": _sum(told["max_error_deg"], told["deviation_deg"]["max"])})
-
-
-def _sum(error_deg: float | None, deviation_deg: float) -> float | None:
-    return None if error_deg is None else deviation_deg if error_deg < EXACT_DEG else error_deg + deviation_deg
-
-
-def _given(request: PlanRequest) -> _Given:
+def _given(request: PlanRequest) -> Within:
+    """The stored flight within the tolerance asked for; for the remedy tolerance, the flight behind its noise."""
     time_s, q = (np.array(column) for column in read_arrays(request.trajectory))
-    if request.tolerance_deg is None:
-        noise = None
-        if request.remedy is not None and _asked(request.remedy).kind == RemedyKind.TOLERANCE:
-            noise = recorded_noise(time_s, dcm_from_quaternion(q))
-        if noise is None:
-            return _Given(time_s, q, None, None)
-        smoothed = smooth(time_s, dcm_from_quaternion(q), noise.suggested, noise.diagnosis)
-        return _Given(np.array(smoothed.time), np.array(smoothed.q), None, smoothed)
-    smoothed = smooth(time_s, dcm_from_quaternion(q), tolerance_radians(request.tolerance_deg))
-    return _Given(np.array(smoothed.time), np.array(smoothed.q), request.tolerance_deg, smoothed)
+    wanted = None if request.remedy is None else _asked(request.remedy).kind
+    if request.tolerance_deg is None and wanted == RemedyKind.TOLERANCE:
+        attitude = dcm_from_quaternion(q)
+        if (noise := recorded_noise(time_s, attitude)) is not None:
+            return behind(time_s, q, smooth(time_s, attitude, noise.suggested, noise.diagnosis))
+    return flown_within(time_s, q, request.tolerance_deg)
 
 
 def _held(moment: Resampled, rate_hz: float) -> Resampled:

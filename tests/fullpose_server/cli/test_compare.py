@@ -38,6 +38,18 @@ def test_table_report_and_page(flight: Path, tmp_path: Path) -> None:
     assert page.read_text().startswith("<!doctype html>")
 
 
+def test_what_happens_first_and_then_is_said_under_the_table(tmp_path: Path) -> None:
+    path = tmp_path / "roll.csv"
+    rows = "".join(f"{k / 50},{5 * k},0,{k / 50 * 400}\n" for k in range(60))
+    path.write_text(f"time_s,yaw_deg,pitch_deg,roll_deg\n{rows}", encoding="utf-8")
+    report = tmp_path / "r.json"
+    code, output, _ = run(path, "--rig", "vertical-limited", "--methods", "plan", "--report", report)
+    assert code == 0, output
+    (made,) = json.loads(report.read_text())["methods"]
+    assert made["why"].startswith("at ")
+    assert f"plan: {made['why']}. {made['how_sure']}" in output
+
+
 def test_a_scenario_file_is_a_flight() -> None:
     code, output, _ = run(SCENARIOS / "singular_start.toml", "--rig", "vertical-3", "--methods", "three_axis,alm")
     assert code == 0, output

@@ -10,6 +10,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import SCENARIOS
+from fullpose_server.planning.flown_within import flown_within
 from fullpose_server.planning.make_comparison import make_comparison
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -19,7 +20,9 @@ METHODS = ["exact", "lagrange", "three_axis"]
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     scenario = replace(SCENARIOS["both_beyond_90"], duration=4.0)
-    made = make_comparison("flight", scenario.time, scenario.quaternion, builtin_rigs()["vertical-4"], METHODS)
+    made = make_comparison(
+        "flight", flown_within(scenario.time, scenario.quaternion, None), builtin_rigs()["vertical-4"], METHODS
+    )
     file: Path = tmp_path_factory.mktemp("page") / "p.html"
     file.write_text(made.page, encoding="utf-8")
     with sync_playwright() as playwright:

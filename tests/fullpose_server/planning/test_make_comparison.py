@@ -1,5 +1,6 @@
 """A comparison's report and page."""
 
+import html
 import json
 import re
 from dataclasses import replace
@@ -8,26 +9,38 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fullpose.attitude import dcm_from_quaternion
+from fullpose.attitude import (
+    dcm_from_quaternion,
+    quaternion_from_euler,
+    quaternion_from_rotation_vector,
+    quaternion_product,
+)
 from fullpose.errors import InputError, MethodError
+from fullpose.plan import plan
 from fullpose.registry import variant
 from fullpose.rig import FRAMES, builtin_rigs
-from fullpose.scenarios import SCENARIOS
+from fullpose.scenarios import SCENARIOS, Scenario
 from fullpose.solve import solve
 from fullpose.verify import verify
+from fullpose_server.formats.reason_text import reason_report
 from fullpose_server.formats.report import exact_percent, exact_text
 from fullpose_server.pages.compare_page import beyond_limits
 from fullpose_server.planning import compare_length
+from fullpose_server.planning.flown_within import Within, flown_within
 from fullpose_server.planning.make_comparison import Comparison, make_comparison
 
 RIGS = builtin_rigs()
 METHODS = ["exact", "lagrange", "three_axis"]
 
 
+def given(scenario: Scenario) -> Within:
+    return flown_within(scenario.time, scenario.quaternion, None)
+
+
 @pytest.fixture(scope="module")
 def made() -> Comparison:
     scenario = replace(SCENARIOS["over_limit"], duration=1.5)
-    return make_comparison("<flight>", scenario.time, scenario.quaternion, RIGS["vertical-limited"], METHODS)
+    return make_comparison("<flight>", given(scenario), RIGS["vertical-limited"], METHODS)
 
 
 def page_data(page: str) -> dict[str, Any]:
@@ -93,7 +106,7 @@ def test_beyond_limits_are_the_verified_violations() -> None:
 
 def test_brought_to_a_rate() -> None:
     scenario = replace(SCENARIOS["small_angles"], duration=1.0, rate=50.0)
-    made = make_comparison("sparse", scenario.time, scenario.quaternion, RIGS["vertical-4"], ["exact"], rate_hz=500.0)
+    made = make_comparison("sparse", given(scenario), RIGS["vertical-4"], ["exact"], rate_hz=500.0)
     assert made.report["samples"] == 501
     assert "quaternion spline" in made.report["resampling"]
     assert "quaternion spline" in made.page
@@ -101,7 +114,7 @@ def test_brought_to_a_rate() -> None:
 
 def test_a_method_that_does_not_apply_has_a_row() -> None:
     scenario = SCENARIOS["two_samples"]
-    made = make_comparison("two", scenario.time, scenario.quaternion, RIGS["vertical-3"], ["dwln", "three_axis"])
+    made = make_comparison("two", given(scenario), RIGS["vertical-3"], ["dwln", "three_axis"])
     assert "fourth axis" in made.report["methods"][0]["refusal"]
     assert "fourth axis" in made.page
     assert made.report["samples"] == 2
@@ -111,13 +124,13 @@ def test_a_method_that_does_not_apply_has_a_row() -> None:
 def test_where_no_method_applies_nothing_is_compared() -> None:
     scenario = SCENARIOS["two_samples"]
     with pytest.raises(MethodError, match=r"alm needs the fourth axis.*exact needs the fourth axis"):
-        make_comparison("two", scenario.time, scenario.quaternion, RIGS["vertical-3"], ["alm", "exact"])
+        make_comparison("two", given(scenario), RIGS["vertical-3"], ["alm", "exact"])
 
 
 def test_variants_have_rows_curves_and_colours_of_their_own() -> None:
     scenario = replace(SCENARIOS["small_angles"], duration=0.2)
     asked = ["alm:mode=open_loop", variant("alm", {"mode": "closed_loop"}, "<closed>"), "alm"]
-    made = make_comparison("small", scenario.time, scenario.quaternion, RIGS["vertical-4"], asked)
+    made = make_comparison("small", given(scenario), RIGS["vertical-4"], asked)
     labels = ["alm:mode=open_loop", "<closed>", "alm"]
     assert [row["label"] for row in made.report["methods"]] == labels
     assert [row["method"] for row in made.report["methods"]] == ["alm"] * 3
@@ -130,7 +143,8 @@ def test_variants_have_rows_curves_and_colours_of_their_own() -> None:
 
 def test_too_many_samples_are_refused_before_they_are_made(monkeypatch: pytest.MonkeyPatch) -> None:
     scenario = SCENARIOS["two_samples"]
-    flight = ("sparse", np.array([0.0, 200_000.0]), scenario.quaternion, RIGS["vertical-4"])
+    far = np.array([0.0, 200_000.0])
+    flight = ("sparse", flown_within(far, scenario.quaternion, None), RIGS["vertical-4"])
     with pytest.raises(InputError, match=r"200000.*at most 12000 s at 1000 Hz.*12000000 samples$"):
         make_comparison(*flight, ["exact"], rate_hz=1000.0)
     with pytest.raises(InputError, match="at most 6 s at 1e"):
@@ -139,7 +153,7 @@ def test_too_many_samples_are_refused_before_they_are_made(monkeypatch: pytest.M
         make_comparison(*flight, ["exact"], rate_hz=float("nan"))
     monkeypatch.setattr(compare_length, "MOST_SAMPLES", 3)
     with pytest.raises(InputError, match="at most 1 samples with 2 methods side by side"):
-        make_comparison("two", scenario.time, scenario.quaternion, RIGS["vertical-4"], ["exact", "alm"])
+        make_comparison("two", given(scenario), RIGS["vertical-4"], ["exact", "alm"])
 
 
 @pytest.mark.parametrize(
@@ -167,4 +181,35 @@ def test_report_table_and_share_agree(made: Comparison) -> None:
 def test_unknown_methods_are_refused() -> None:
     scenario = SCENARIOS["two_samples"]
     with pytest.raises(MethodError, match="magic"):
-        make_comparison("two", scenario.time, scenario.quaternion, RIGS["vertical-4"], ["magic"])
+        make_comparison("two", given(scenario), RIGS["vertical-4"], ["magic"])
+
+
+def test_what_keeps_a_method_from_it_is_told_in_a_sentence() -> None:
+    time = np.arange(0.0, 2.0, 0.02)
+    rolled = quaternion_from_euler(0.2 * np.sin(time), 0.0 * time, np.radians(400.0) * time)
+    made = make_comparison("roll", flown_within(time, rolled, None), RIGS["vertical-limited"], ["plan", "lagrange"])
+    planned, stepped = made.report["methods"]
+    alone = plan(time, dcm_from_quaternion(rolled), RIGS["vertical-limited"])
+    assert not planned["feasible"]
+    assert planned["why"] == reason_report(alone.verdict)["what_happens"]
+    assert planned["how_sure"] == alone.verdict.how_sure
+    assert " frame exceeds its " in stepped["why"]
+    assert stepped["how_sure"] is None
+    for method in (planned, stepped):
+        assert html.escape(method["why"][1:]) in made.page
+    assert html.escape(planned["how_sure"]) in made.page
+
+
+def test_a_noisy_flight_that_no_method_can_fly_is_suggested_a_tolerance_and_flown_within_it() -> None:
+    time = np.arange(0.0, 2.0, 0.002)
+    clean = quaternion_from_euler(0.5 * np.sin(time), 0.3 * np.cos(time), 0.2 * time)
+    noise = np.radians(0.02) * np.random.default_rng(0).normal(size=(len(time), 3))
+    noisy = quaternion_product(clean, quaternion_from_rotation_vector(noise))
+    refused = make_comparison("noisy", flown_within(time, noisy, None), RIGS["vertical-limited"], ["exact"]).report
+    suggested = refused["suggested_tolerance_deg"]
+    assert 0.06 < suggested < 0.12
+    within = flown_within(time, noisy, suggested)
+    flown = make_comparison("noisy", within, RIGS["vertical-limited"], ["exact"]).report
+    assert flown["methods"][0]["feasible"]
+    assert flown["methods"][0]["why"] is None
+    assert flown["deviation_deg"]["max"] <= flown["tolerance_deg"] == suggested

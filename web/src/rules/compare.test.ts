@@ -1,6 +1,17 @@
 import { describe, expect, it } from "vitest";
 import type { MethodFigures } from "../contract/types";
-import { best, COLUMNS, exactText, fit, ranked, standingOf, summaryOf, type Column } from "./compare";
+import {
+  adviceOf,
+  best,
+  COLUMNS,
+  exactText,
+  fit,
+  ranked,
+  sentencesOf,
+  standingOf,
+  summaryOf,
+  type Column,
+} from "./compare";
 
 const peaks = (rate: number): object => ({
   base: null,
@@ -86,6 +97,33 @@ describe("what a method comes to", () => {
     const { value } = column("way");
     expect(value(method("a", { total_variation_deg: { base: 1.5, outer: 2 } }))).toBe(3.5);
     expect(value(method("a", { total_variation_deg: null }))).toBeNull();
+  });
+});
+
+describe("what keeps a method from it", () => {
+  it("is a sentence of each that it keeps; how sure only of what is refused", () => {
+    const why = "at 2.450 s the inner frame reaches its stop at 60 deg";
+    const methods = [
+      method("plan", { feasible: false, why, how_sure: "Evidence, not a proof." }),
+      method("exact", { why: null }),
+      method("lagrange", { why: "3 of 9 samples miss the attitude", how_sure: null }),
+    ];
+    expect(sentencesOf(methods)).toEqual([
+      {
+        label: "plan",
+        text: "At 2.450 s the inner frame reaches its stop at 60 deg.",
+        howSure: "Evidence, not a proof.",
+      },
+      { label: "lagrange", text: "3 of 9 samples miss the attitude.", howSure: null },
+    ]);
+  });
+
+  it("is the recording where a tolerance is suggested, and one is not yet given", () => {
+    const report = (tolerance_deg: number | null, suggested_tolerance_deg: number | null): string | null =>
+      adviceOf({ tolerance_deg, suggested_tolerance_deg } as never);
+    expect(report(null, 0.05)).toBe("A tolerance of 0.05 deg takes away what the recording added.");
+    expect(report(0.05, 0.05)).toBeNull();
+    expect(report(null, null)).toBeNull();
   });
 });
 

@@ -40,6 +40,29 @@ export function standingOf(method: MethodFigures): Standing {
   return { tone: "good", word: "Exact, inside limits", detail: "" };
 }
 
+export interface Sentence {
+  label: string;
+  text: string;
+  /** What a verdict of the planner rests on, for whoever asks. */
+  howSure: string | null;
+}
+
+/** What keeps each method from it, first and then: of those that it keeps. */
+export function sentencesOf(methods: readonly MethodFigures[]): Sentence[] {
+  return methods.flatMap(({ label, why, how_sure: howSure, feasible }) =>
+    why ? [{ label, text: sentence(why), howSure: feasible ? null : (howSure ?? null) }] : [],
+  );
+}
+
+/** What a tolerance would do for a flight whose recording is what no method can fly. */
+export function adviceOf(report: NonNullable<Comparison["report"]>): string | null {
+  const suggested = report.suggested_tolerance_deg;
+  if (!suggested || (report.tolerance_deg ?? 0) >= suggested) return null;
+  return `A tolerance of ${suggested} deg takes away what the recording added.`;
+}
+
+const sentence = (text: string): string => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+
 /** The frame and limit that most samples are beyond. */
 function beyond({ limit_violation_counts: counts }: MethodFigures): string | null {
   const all = Object.entries(counts ?? {}).flatMap(([frame, kinds]) =>

@@ -86,6 +86,10 @@ class MethodFiguresOut(Wire):
     limited_by: list[dict[str, str | int]] | None = None
     blocking: BlockingOut | None = None
     failures: list[FailureOut] | None = None
+    why: str | None = Field(
+        default=None, description="What keeps it from every limit and attitude, first and then, in one sentence"
+    )
+    how_sure: str | None = Field(default=None, description="What a verdict of the planner rests on, in words")
 
 
 class ComparisonReportOut(Wire):
