@@ -2427,6 +2427,11 @@ export interface components {
             failures?: components["schemas"]["FailureOut"][] | null;
             /** Feasible */
             feasible?: boolean | null;
+            /**
+             * How Sure
+             * @description What a verdict of the planner rests on, in words
+             */
+            how_sure?: string | null;
             iterations?: components["schemas"]["IterationsOut"] | null;
             /**
              * Label
@@ -2481,6 +2486,11 @@ export interface components {
             total_variation_deg?: {
                 [key: string]: number;
             } | null;
+            /**
+             * Why
+             * @description What keeps it from every limit and attitude, first and then, in one sentence
+             */
+            why?: string | null;
         };
         /**
          * MethodIn
