@@ -99,7 +99,7 @@ def _table(report: dict[str, Any]) -> str:
         )
         if method["why"] is not None:
             sure = f". {method['how_sure']}" if method["how_sure"] and not method["feasible"] else ""
-            reasons.append(f"{method['label']}: {method['why']}{sure}")
+            reasons.append(f"  {method['label']}: {method['why']}{sure}")
     widths = [max(len(row[k]) for row in rows) for k in range(len(COLUMNS))]
     lines = [
         "  ".join([row[0].ljust(widths[0]), *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:], strict=True))])
