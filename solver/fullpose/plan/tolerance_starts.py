@@ -26,7 +26,8 @@ from fullpose.trajectory.windows import stage_samples
 CONSTANTS = 8  # angles a turn that a chart's angle is held at
 STAGE = 0.1  # [s]
 FEWEST = 3  # stages of a search
-SEARCHES = ((500, False), (500, True), (2000, False))  # states kept a stage, and whether backward in time
+SEARCHES = ((500, False), (500, True))  # states kept a stage, and whether backward in time
+WIDER = ((2000, False),)  # where those lead far away
 PATHS = 5  # of each search
 POWER = 6.0  # of the attitude error that a path costs: the largest decides
 LEVELS = 6  # of each frame that first poses are tried from, at most
@@ -41,14 +42,23 @@ TURNS_APART = 1.5  # from home on either side
 
 def starts(problem: Problem, first: Array | None) -> Iterator[Array]:
     """Paths (n, 4) [rad]. first (1.., 4): a pose [rad] that is fixed, its rates [rad/s] where they are; None: free."""
-    time, rig = problem.time, problem.rig
-    if rig.geometry.redundant:
+    if problem.rig.geometry.redundant:
         yield from _constant_angles(problem)
+    yield from _beams(problem, first, SEARCHES)
+
+
+def more_starts(problem: Problem, first: Array | None) -> Iterator[Array]:
+    """More of them, from wider searches."""
+    yield from _beams(problem, first, WIDER)
+
+
+def _beams(problem: Problem, first: Array | None, searches: tuple[tuple[int, bool], ...]) -> Iterator[Array]:
+    time, rig = problem.time, problem.rig
     samples = stage_samples(time, STAGE)
     if len(samples) < FEWEST:
         return
     stages, attitude = time[samples], np.ascontiguousarray(problem.attitude[samples])
-    for beam, backward in SEARCHES:
+    for beam, backward in searches:
         if backward:
             reverse = np.ascontiguousarray(attitude[::-1])
             found = _searched(stages[-1] - stages[::-1], reverse, rig, None, beam)[:, ::-1]

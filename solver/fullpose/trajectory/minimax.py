@@ -52,6 +52,9 @@ class Minimax:
 
     unknowns: Array
     tolerance: float
+    multipliers: Array | None = None  # (k,) and the trust region [rad], for who goes on from here
+    trust: float = TRUST
+    settled: bool = False  # nothing is gained by going on
 
 
 @dataclass(frozen=True)
@@ -64,8 +67,15 @@ class _Iterate:
     multipliers: Array  # (k,)
 
 
-def minimax(mesh: Mesh, c: Array, aim: Aim, solver: Solver, iterations: int) -> Minimax:
-    """From unknowns c inside the limits: the least of the aim next to them."""
+def begun(mesh: Mesh, c: Array) -> Minimax:
+    """Unknowns c inside the limits, to begin from."""
+    return Minimax(c, float(mesh.errors(c).max()))
+
+
+def minimax(mesh: Mesh, begin: Minimax, aim: Aim, solver: Solver, iterations: int) -> Minimax:
+    """From unknowns inside the limits, or on from where another call for the same aim and mesh ended: the least of the
+    aim next to them."""
+    c = begin.unknowns
 
     def merit(angle: Array, c: Array, unit: float) -> float:
         largest = max(0.0, float(angle.max()) ** 2 - aim.floor)
@@ -75,7 +85,9 @@ def minimax(mesh: Mesh, c: Array, aim: Aim, solver: Solver, iterations: int) -> 
     angle = mesh.errors(c)
     share = np.maximum(angle**2 / max(float(angle.max()) ** 2, FLATTEST), 1e-9) ** PEAKED
     multipliers = aim.largest * share / share.sum() if aim.floor == 0.0 else np.zeros(len(angle))
-    trust = TRUST
+    if begin.multipliers is not None and len(begin.multipliers) == len(angle):
+        multipliers = begin.multipliers
+    trust, settled = begin.trust, True
     for _ in range(iterations):
         at = _Iterate(c, angle, max(float(angle.max()) ** 2, FLATTEST), multipliers)
         answer = _step(mesh, at, aim, trust, solver)
@@ -99,7 +111,9 @@ def minimax(mesh: Mesh, c: Array, aim: Aim, solver: Solver, iterations: int) -> 
         trust = min(TRUST, 2.0 * trust) if fraction == 1.0 else max(fraction, 0.5) * trust
         if gain < SETTLED * now or shift < STILL:
             break
-    return Minimax(c, float(angle.max()))
+    else:
+        settled = False
+    return Minimax(c, float(angle.max()), multipliers, trust, settled)
 
 
 def _quadratic(mesh: Mesh, c: Array) -> float:
