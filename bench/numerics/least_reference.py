@@ -15,9 +15,9 @@ from bench.numerics.shooting import Reference, descended, path_of, pursuit, star
 from fullpose._typing import Array
 from fullpose.verify import verify
 
-ON_THE_GRID = 6
+ON_THE_GRID = 5
 SHOT, GO_ON = 3, 4  # powers that all starts are shot at with, and those that the best go through
-FINALISTS = 4
+FINALISTS = 3
 APART = 0.05  # [rad] between two finalists in some frame
 
 

@@ -22,10 +22,10 @@ STEP = 1e-6  # [rad] of a central difference
 TRUST = 0.4  # [rad] that a sample moves in one programme at most
 LEAST_TRUST = 1e-5  # [rad]
 ITERATIONS = 40
-SETTLED = 3e-4  # share of tau below which an improvement is none
-STALE = 3  # of those in a row end it
+SETTLED = 1e-3  # share of tau below which an improvement is none
+STALE = 2  # of those in a row end it
 ROWS_FROM = 0.6  # of the largest error: samples below it less what they can gain have no row
-CUTS = 3  # rounds of cutting planes in one iteration
+CUTS = 2  # rounds of cutting planes in one iteration
 OVER = 2e-3  # of tau: an error that is over it by more is cut
 
 
@@ -84,7 +84,7 @@ def descended_linearly(case: Case, path: Array, enough: float = 0.0) -> Descent 
             break
         stale = stale + 1 if now - after < SETTLED * now else 0
         x, now, trust = moved, after, min(TRUST, 2.0 * trust)
-        if stale >= STALE or (count >= 8 and now > 1.5 * enough > 0.0):
+        if stale >= STALE or (count >= 5 and now > 1.5 * enough > 0.0):
             break
     return Descent(x, now)
 

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from fullpose.attitude import dcm_from_quaternion
 from fullpose.errors import InputError
 from fullpose.recorded import Smoothed, effect_of, smooth
-from fullpose.recorded.tube import WIDEST
+from fullpose.recorded.tube import WIDEST, rounded_up
 
 WIDEST_DEG = math.degrees(WIDEST)
+HAIR = 1.02  # times a least tolerance that is suggested: the search for it may come to a hair more
 
 
 def tolerance_radians(tolerance_deg: float, name: str = "tolerance_deg") -> float:
@@ -75,8 +76,18 @@ def statement(smoothed: Smoothed) -> str:
     return "; ".join(done) or "nothing to take away"
 
 
+def _enough(report: dict[str, Any]) -> float | None:
+    """The least tolerance [deg] of a flight that is refused, with a hair more, in three digits; None: none is known."""
+    least = report.get("verdict", {}).get("least_tolerance_deg")
+    if report["feasible"] or not least or least * HAIR > WIDEST_DEG:
+        return None
+    return min(WIDEST_DEG, math.degrees(rounded_up(math.radians(least * HAIR))))
+
+
 def advice(report: dict[str, Any]) -> str | None:
     """The suggestion in one sentence; None where there is none."""
+    if report.get("suggested_tolerance_deg") is None and (enough := _enough(report)) is not None:
+        return f"a tolerance of {enough:g} deg is enough for every limit"
     suggested, floor = report.get("suggested_tolerance_deg"), report.get("tolerance_floor_deg")
     if suggested is None or (report.get("tolerance_deg") or 0.0) >= suggested:
         return None

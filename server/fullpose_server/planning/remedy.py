@@ -58,7 +58,7 @@ def find_remedy(
     watched = Watched(progress)
     match kind:
         case RemedyKind.TOLERANCE:
-            found = [tolerance(time, attitude, rig, start, options, progress)]
+            found = [tolerance(time, attitude, rig, start, options, watched)]
         case RemedyKind.SLOW_DOWN:
             found = [slow_down(time, attitude, rig, start, options, watched)]
         case RemedyKind.HEADING_OFFSET | RemedyKind.MOUNTING_OFFSET:

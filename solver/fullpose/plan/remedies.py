@@ -17,7 +17,7 @@ from fullpose._typing import Array, Progress
 from fullpose.attitude import dcm_from_quaternion, quaternion_from_dcm
 from fullpose.errors import InputError
 from fullpose.plan.remedy import NOTHING, Remedy, Trials
-from fullpose.plan.tolerance_remedy import least_change
+from fullpose.plan.tolerance_remedy import TRIALS, least_change
 from fullpose.plan.verdict import Margins
 from fullpose.resample import continuous, resample
 from fullpose.rig import FRAMES, LIMITS, FrameLimits, Rig
@@ -216,11 +216,13 @@ def tolerance(
 ) -> Remedy:  # fmt: skip
     """The least tolerance that was found for which the flight fits; `Remedy.deviation` is what it costs.
 
-    Of a recorded flight whose noise matters, what the recording added is taken away first. Raises `CancelledError` from
+    Of a recorded flight whose noise matters, what the recording added is taken away first. The search for an exact path
+    is one trial, which a caller may give up; the least tolerance, which takes time in proportion to the flight, is the
+    other. Raises `CancelledError` from
     progress, `InputError` as `plan` does.
     """
     t, C = np.asarray(time, float), np.asarray(attitude, float)
-    return least_change(t, C, rig, Trials(1, progress, options or PlanOptions(), start))
+    return least_change(t, C, rig, Trials(TRIALS, progress, options or PlanOptions(), start))
 
 
 def _limits(rig: Rig) -> Iterator[tuple[int, int]]:

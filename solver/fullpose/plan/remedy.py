@@ -5,6 +5,7 @@ trials and is called within each; from it a caller may raise `CancelledError`, o
 one trial that is on and lets the search go on: a trial that was given up counts as one that does not do.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from numpy.typing import ArrayLike
@@ -69,6 +70,11 @@ class Trials:
         made = self.feasible(time, attitude, rig)
         return made is not None and made.ready
 
+    def exact(self, time: Array, attitude: Array, rig: Rig) -> Plan | None:
+        """A trial of every sample and every alternative, without best effort; None where it was given up."""
+        self.done += 1
+        return self._watched(time, attitude, rig, replace(self.options, best_effort=False))
+
     def _watched(self, time: Array, attitude: Array, rig: Rig, options: PlanOptions) -> Plan | None:
         try:
             self._tell()
@@ -81,10 +87,17 @@ class Trials:
         if self.progress is not None:
             self.progress(min(self.done, self.total), self.total)
 
-    def final(self, time: Array, attitude: Array, rig: Rig, tolerance: float | None = None) -> Plan:
-        """The plan that is returned, from every sample; tolerance [rad]: in place of the options' own."""
-        options = self.options if tolerance is None else replace(self.options, tolerance=tolerance)
-        made = plan(time, attitude, rig, self.start, options=options)
+    def _tell_last(self) -> None:
+        """The plan that is returned may be cancelled, and is not given up."""
+        with suppress(OutOfTimeError):
+            self._tell()
+
+    def final(self, time: Array, attitude: Array, rig: Rig, options: PlanOptions | None = None) -> Plan:
+        """The plan that is returned, from every sample; options: in place of the search's own."""
+        made = plan(
+            time, attitude, rig, self.start, options=options or self.options,
+            progress=lambda _done, _total: self._tell_last(),
+        )  # fmt: skip
         if self.progress is not None:
             self.progress(self.total, self.total)
         return made

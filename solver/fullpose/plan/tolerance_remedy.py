@@ -1,6 +1,7 @@
 """The tolerance as a remedy: what the recording added is taken away; what a limit still closes is given up evenly."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from fullpose.verify import attitude_errors, payload_attitudes
 from fullpose.vocabulary import RemedyKind
 
 ANY = math.pi  # [rad]: whatever the least tolerance is, the flight is flown within it
+LOOK = 0  # alternatives of the plan that is returned: the search for an exact path is over by then
+TRIALS = 2  # that search, and the plan within the tolerance
 EXACT = 1e-9  # [rad] of attitude: less is no tolerance
 
 
@@ -25,10 +28,13 @@ def least_change(time: Array, attitude: Array, rig: Rig, trials: Trials) -> Reme
     if noisy is not None:
         within = smooth(time, attitude, noisy.suggested, noisy.diagnosis)
         at, C = np.array(within.time), dcm_from_quaternion(within.q)
-    made = trials.final(at, C, rig, tolerance=ANY)
+    made = trials.exact(at, C, rig)  # first: what is flown exactly needs no tolerance
+    if made is None or not made.ready:
+        made = trials.final(at, C, rig, replace(trials.options, tolerance=ANY, alternatives=LOOK))
     error, _ = attitude_errors(payload_attitudes(rig, made.solution.angles), attitude)
     most = float(error.max())
+    given_up = trials.given_up
     if most <= EXACT:
-        return Remedy(RemedyKind.TOLERANCE, NOTHING, 0.0, at, C, rig, made, deviation=error)
+        return Remedy(RemedyKind.TOLERANCE, NOTHING, 0.0, at, C, rig, made, deviation=error, given_up=given_up)
     enough = max(rounded_up(most), noisy.suggested if noisy is not None else 0.0)
-    return Remedy(RemedyKind.TOLERANCE, "attitude", enough, at, C, rig, made, deviation=error)
+    return Remedy(RemedyKind.TOLERANCE, "attitude", enough, at, C, rig, made, deviation=error, given_up=given_up)

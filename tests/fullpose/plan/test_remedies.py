@@ -169,6 +169,29 @@ def test_the_least_tolerance_is_a_remedy_and_says_what_it_costs():
     assert verify(remedy.time, remedy.plan.solution.angles, remedy.rig).violations == ()
 
 
+def test_a_search_for_an_exact_path_that_takes_too_long_is_given_up_for_the_tolerance():
+    """And nobody gives up the plan that is returned, whose progress is told all the same."""
+    told = []
+    yaw = 20 * DEG * np.clip(TIME - 1.25, 0.0, 0.5) / 0.5
+    remedy = tolerance(TIME, dcm_from_euler(yaw, 0.0, 0.0), base_alone(20 * DEG), progress=never_long_but_last(told))
+    assert remedy.given_up == 1
+    assert remedy.plan.ready
+    assert remedy.value == pytest.approx(5 * DEG, rel=0.1)
+    assert {total for _, total in told} == {2}
+    assert max(done for done, _ in told) == 2
+
+
+def never_long_but_last(told):
+    """Progress that gives up whatever is not the end."""
+
+    def progress(done, total):
+        told.append((done, total))
+        if done < total:
+            raise OutOfTimeError("too long")
+
+    return progress
+
+
 def test_a_flight_that_fits_needs_no_tolerance():
     remedy = tolerance(TIME, YAW, base_alone(50 * DEG))
     assert (remedy.what, remedy.value) == (NOTHING, 0.0)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -153,3 +154,19 @@ def test_what_smoothing_leaves_of_it_is_the_planners(tmp_path: Path) -> None:
     assert made["limit_violations"] == []
     assert 1e-6 < made["max_error_deg"] <= 1.0
     assert made["deviation_deg"]["max"] == 0.0
+
+
+def test_a_flight_just_beyond_a_limit_is_told_the_tolerance_that_helps(tmp_path: Path) -> None:
+    """A roll past the inner frame's stop, held there by pitch: what is suggested flies it."""
+    flight = tmp_path / "near.csv"
+    rows = "".join(f"{t},0,0,{330.0 * t}\n" for t in np.arange(0.0, 1.0, 0.02).round(3).tolist())
+    flight.write_text(f"time_s,yaw_deg,pitch_deg,roll_deg\n{rows}")
+    refused = solved(flight, tmp_path)
+    assert refused.exit_code == 3
+    least = report(tmp_path)["verdict"]["least_tolerance_deg"]
+    said = re.search(r"A tolerance of (\S+) deg is enough for every limit", refused.stderr)
+    assert said is not None
+    assert least < float(said[1]) < 1.2 * least
+    flown = solved(flight, tmp_path, "--tolerance", said[1])
+    assert flown.exit_code == 0, flown.output
+    assert report(tmp_path)["max_error_deg"] <= float(said[1])
