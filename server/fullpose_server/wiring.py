@@ -17,6 +17,7 @@ import numpy as np
 
 from fullpose_server.api.deps import Services
 from fullpose_server.api.lapsing import lapse_leases
+from fullpose_server.api.offload.curves import CurvesMaker
 from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
@@ -91,6 +92,7 @@ async def serving(settings: Settings, scenes: SceneServer) -> AsyncIterator[Serv
         stack.callback(scenes.close)
         services.offload.start()
         stack.push_async_callback(services.offload.close)
+        stack.push_async_callback(services.curves.close)
         await services.queue.start()
         stack.push_async_callback(services.queue.close)
         services.comparisons.start()
@@ -172,6 +174,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         scenes=on_demand,
         offload=Offload(settings),
         evidence=EvidenceMaker(folder, settings.database),
+        curves=CurvesMaker(folder / "curves", run_folder, folder / "plans"),
         disk=Disk(folder, settings.disk_alarm_bytes, settings.disk_reserve_bytes),
         quarantine=quarantine,
         upkeep=Upkeep(

@@ -12,6 +12,7 @@ from starlette.requests import HTTPConnection
 
 from fullpose_server.api.front import FrontStatus
 from fullpose_server.api.hashing import Hashing
+from fullpose_server.api.offload.curves import CurvesMaker
 from fullpose_server.api.offload.evidence import EvidenceMaker
 from fullpose_server.api.offload.pool import Offload
 from fullpose_server.api.people import People
@@ -75,6 +76,7 @@ class Services:
     scenes: Scenes
     offload: Offload
     evidence: EvidenceMaker
+    curves: CurvesMaker
     disk: Disk
     quarantine: Quarantine
     upkeep: Upkeep

@@ -718,6 +718,46 @@ export interface paths {
         patch: operations["label_run_api_v1_runs__run__patch"];
         trace?: never;
     };
+    "/api/v1/runs/{run}/curves": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Run Curves
+         * @description What there is to draw of a run, and what happened in it. Made of its record when first asked for.
+         */
+        get: operations["run_curves_api_v1_runs__run__curves_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run}/curves/window": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Curves Window
+         * @description A window of the curves, or of the difference, as `schemas.curves` describes it: least and greatest by bucket.
+         */
+        get: operations["curves_window_api_v1_runs__run__curves_window_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/runs/{run}/evidence": {
         parameters: {
             query?: never;
@@ -1491,6 +1531,66 @@ export interface components {
          */
         Convention: "nue" | "ned" | "enu";
         /**
+         * CurveEvent
+         * @description What happened in a run, to be found on the time axis.
+         */
+        CurveEvent: {
+            /**
+             * At S
+             * @description After the first sample
+             */
+            at_s: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "command" | "alarm" | "transition" | "begin" | "end" | "gap";
+            /**
+             * Severity
+             * @description Of an alarm
+             */
+            severity: ("fault" | "warning") | null;
+            /** Text */
+            text: string;
+        };
+        /**
+         * CurvesOut
+         * @description The curves of a run, or how far they are from being made.
+         */
+        CurvesOut: {
+            against: components["schemas"]["DifferenceOut"] | null;
+            /** Columns */
+            columns: string[];
+            /** Duration S */
+            duration_s: number;
+            /** Events */
+            events: components["schemas"]["CurveEvent"][];
+            /**
+             * Events Left Out
+             * @description How many later ones there are than are listed
+             */
+            events_left_out: number;
+            /**
+             * Progress
+             * @description What part of them is made, 0 to 1: ask again until they are ready
+             */
+            progress: number;
+            /** Ready */
+            ready: boolean;
+            /**
+             * Record Sha256
+             * @description Of the record that they were made of
+             */
+            record_sha256: string | null;
+            /** Samples */
+            samples: number;
+            /**
+             * Started
+             * @description Seconds since 1970, of the first sample
+             */
+            started: number | null;
+        };
+        /**
          * DeviationOut
          * @description By how much the flight that is flown differs from the samples as they were given.
          */
@@ -1571,6 +1671,32 @@ export interface components {
         DiagnosisPlots: {
             noise: components["schemas"]["NoisePlot"];
             steps: components["schemas"]["StepsPlot"];
+        };
+        /**
+         * DifferenceOut
+         * @description What a run is compared with. `time_s` is the run's, of the reference's samples those of the same moment.
+         */
+        DifferenceOut: {
+            /**
+             * Aligned
+             * @description By the time of the flight; or, where one of both has none, by the time since it began to run
+             * @enum {string}
+             */
+            aligned: "flight" | "run";
+            /** Columns */
+            columns: string[];
+            /** Id */
+            id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "run" | "plan";
+            /**
+             * Turned Deg
+             * @description Whole revolutions by which the reference was moved, by frame
+             */
+            turned_deg: number[];
         };
         /** Disarm */
         Disarm: {
@@ -8548,6 +8674,215 @@ export interface operations {
             };
             /** @description No room on the disk */
             507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    run_curves_api_v1_runs__run__curves_get: {
+        parameters: {
+            query?: {
+                /** @description What to compare with: `run:ID` or `plan:ID` */
+                against?: string | null;
+            };
+            header?: never;
+            path: {
+                run: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CurvesOut"];
+                };
+            };
+            /** @description They are being made: ask again */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CurvesOut"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is being written, or its curves are being made */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many at once: try again later */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    curves_window_api_v1_runs__run__curves_window_get: {
+        parameters: {
+            query: {
+                /** @description What to compare with: `run:ID` or `plan:ID` */
+                against?: string | null;
+                /** @description After the run's first sample */
+                from_s: number;
+                /** @description After the run's first sample */
+                to_s: number;
+                /** @description Buckets wanted, one a pixel, say */
+                width?: number;
+            };
+            header?: never;
+            path: {
+                run: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is being written, or its curves are being made */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many at once: try again later */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };

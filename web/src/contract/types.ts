@@ -15,6 +15,9 @@ export type CommandName = CommandBody["command"];
 export type ArgsOf<Name extends CommandName> = Given<Extract<CommandBody, { command: Name }>["args"]>;
 export type CommandDone = Schemas["CommandOut"];
 export type Comparison = Schemas["ComparisonOut"];
+/** What there is to draw of a run, and what happened in it. */
+export type Curves = Schemas["CurvesOut"];
+export type CurveEvent = Schemas["CurveEvent"];
 export type Convention = NonNullable<FlightForm["convention"]>;
 /** A kind of file that plans and runs are downloaded as. */
 export type ExportKind = Schemas["ExportKindOut"];

@@ -15,7 +15,7 @@ import type {
   UserChange,
   UserWanted,
 } from "../contract/types";
-import { page, pathTo, request, socketTo } from "./request";
+import { bytes, page, pathTo, request, socketTo } from "./request";
 import { lookAt, upload } from "./upload";
 
 /** How long an answer may take: to a Stop, to a command or the lease, and to what is read or begun. */
@@ -107,6 +107,12 @@ export const api = {
   deleteRun: (run: string) => request("delete", "/api/v1/runs/{run}", { run }, READ),
   pinRun: (run: string) => request("put", "/api/v1/runs/{run}/pin", { run }, READ),
   unpinRun: (run: string) => request("delete", "/api/v1/runs/{run}/pin", { run }, READ),
+  /** What there is to draw of a run, alone or `against` another run or a plan; asked again until it is ready. */
+  curves: (run: string, against: string | null = null) =>
+    request("get", "/api/v1/runs/{run}/curves", { run }, { ...READ, query: { against } }),
+  /** A window of it, in the binary form that `net/curves` reads. */
+  curvesWindow: (run: string, from_s: number, to_s: number, width: number, against: string | null = null) =>
+    bytes("/api/v1/runs/{run}/curves/window", { run }, { from_s, to_s, width, against }, READ.withinMs),
   /** The kinds of file that plans and runs are downloaded as. */
   exports: () => request("get", "/api/v1/exports", {}, READ),
   evidenceUrl: (run: string) => pathTo("/api/v1/runs/{run}/evidence", { run }),

@@ -96,11 +96,27 @@ export function cursorOf(link: string | null): string | null {
   return next === undefined ? null : new URLSearchParams(next.split("?")[1]).get("before");
 }
 
+/** The bytes of an answer that is no JSON. Raises as `request` does. */
+export async function bytes<Path extends PathOf<"get">>(
+  path: Path,
+  named: Named<Path>,
+  query: QueryOf<Path>,
+  withinMs: number,
+): Promise<ArrayBuffer> {
+  return (await sent("get", pathTo(path, named, query), { withinMs })).buffer;
+}
+
+interface Sent {
+  readonly text: string;
+  readonly buffer: ArrayBuffer;
+  readonly link: string | null;
+}
+
 async function sent(
   verb: Verb,
   url: string,
   { body, withinMs, keepalive = false }: Omit<Sending<unknown, unknown>, "query">,
-): Promise<{ text: string; link: string | null }> {
+): Promise<Sent> {
   const headers: Record<string, string> = { [CLIENT_HEADER]: me() };
   const init: RequestInit = { method: verb.toUpperCase(), keepalive, headers, signal: AbortSignal.timeout(withinMs) };
   if (body !== undefined) {
@@ -108,16 +124,23 @@ async function sent(
     headers["content-type"] = "application/json";
   }
   let response: Response;
-  let text: string;
+  let buffer: ArrayBuffer;
   try {
     response = await fetch(url, init);
-    text = await response.text();
+    buffer = await response.arrayBuffer();
   } catch (error) {
     if (error instanceof DOMException && error.name === "TimeoutError") {
       throw new ApiError(0, `The server did not answer within ${withinMs / 1000} s`);
     }
     throw silence();
   }
-  if (!response.ok) throw refusal(response.status, text);
-  return { text, link: response.headers.get("link") };
+  const read = (): string => new TextDecoder().decode(buffer);
+  if (!response.ok) throw refusal(response.status, read());
+  return {
+    buffer,
+    link: response.headers.get("link"),
+    get text(): string {
+      return read();
+    },
+  };
 }

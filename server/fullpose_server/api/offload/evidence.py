@@ -4,21 +4,15 @@ A record is read whole for it, which may take some hundred megabytes and seconds
 """
 
 import asyncio
-import json
-import logging
-import sys
 from pathlib import Path
-from typing import Any
 
+from fullpose_server.api.offload.one_off import done_apart
 from fullpose_server.api.problems import ApiError
-from fullpose_server.api.schemas.base import Problem
 from fullpose_server.location import Location, PostgresqlUrl
-from fullpose_server.planning.worker_process import WorkerProcess
 
 KIND = "evidence"
 WAITING = 8  # beyond the one that is being made
-_PROGRAM = (sys.executable, "-m", "fullpose_server.api.offload.evidence_worker")
-log = logging.getLogger(__name__)
+_PROGRAM = "fullpose_server.api.offload.evidence_worker"
 
 
 class EvidenceMaker:
@@ -38,28 +32,7 @@ class EvidenceMaker:
         try:
             async with self._turn:
                 url = self._database.url if isinstance(self._database, PostgresqlUrl) else None
-                await self._made({"folder": str(self._folder), "run": run, "target": str(target), "database": url})
+                asked = {"folder": str(self._folder), "run": run, "target": str(target), "database": url}
+                await done_apart(_PROGRAM, KIND, asked)
         finally:
             self._asked -= 1
-
-    async def _made(self, request: dict[str, Any]) -> None:
-        worker = WorkerProcess(_PROGRAM)
-        try:
-            await worker.start()
-            async for answer in worker.ask(json.dumps({"kind": KIND, "request": request})):
-                match answer:
-                    case {"done": _}:
-                        return
-                    case {"failed": {"unexpected": str(said)}}:
-                        log.error("evidence of run %s: %s", request["run"], said)
-                        raise ApiError(500, "internal", "an error of the server; its log tells more")
-                    case {"failed": document}:
-                        problem = Problem.model_validate(document)
-                        code = problem.type.rpartition(":")[2]
-                        raise ApiError(problem.status, code, problem.detail, errors=problem.errors)
-            log.error("evidence of run %s: the process that makes it ended %s", request["run"], await worker.ended())
-            raise ApiError(503, "worker", "the process that makes it has ended: there may be too little memory")
-        except OSError as refusal:
-            raise ApiError(503, "worker", f"the process that makes it did not start: {refusal}") from None
-        finally:
-            await worker.kill()

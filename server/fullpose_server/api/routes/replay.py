@@ -25,8 +25,9 @@ from fullpose_server.errors import FileError
 from fullpose_server.runtime.contract.telemetry import FIELDS
 from fullpose_server.runtime.recording.mcap_reader import RecordError
 from fullpose_server.runtime.recording.playback import PlaybackError, RunPlayback
+from fullpose_server.runtime.recording.run_index import is_being_written
 
-MOST_REPLAYS = 8  # ten minutes at 1 kHz are some 200 MB
+MOST_REPLAYS = 8  # one that is still written is in memory: ten minutes at 1 kHz are some 200 MB
 LOOK_S = 1.0 / 30.0
 router = APIRouter(tags=["stream"])
 
@@ -49,7 +50,7 @@ async def replay_stream(run: str, socket: WebSocket, services: ServicesDep) -> N
 async def _play(run: str, scene: str, path: Path, socket: WebSocket, services: Services) -> None:
     rig = (await asyncio.to_thread(services.runs.get, run)).rig
     try:
-        playback = await asyncio.to_thread(RunPlayback, path)
+        playback = await _playback(run, path, services)
     except RecordError as error:
         raise FileError(path.name, f"a record ({error})") from None
     source = _Run(playback, rig, scene)
@@ -59,6 +60,14 @@ async def _play(run: str, scene: str, path: Path, socket: WebSocket, services: S
         await StreamClient(socket, source).run()
     finally:
         await asyncio.to_thread(services.scenes.remove, source.scene)
+
+
+async def _playback(run: str, path: Path, services: Services) -> RunPlayback:
+    """Of a record that is still being written what is there now, in memory; of any other by its curves."""
+    if await asyncio.to_thread(is_being_written, path):
+        return await asyncio.to_thread(RunPlayback, path)
+    curves = await services.curves.made(run)
+    return await asyncio.to_thread(RunPlayback, path, curves=curves)
 
 
 class _Run:

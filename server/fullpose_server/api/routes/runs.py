@@ -77,7 +77,7 @@ def get_run(run: str, services: ServicesDep) -> RunOut:
 async def run_evidence(run: str, services: ServicesDep) -> FileResponse:
     """Everything that the run was as one signed file, which `fullpose evidence verify` proves without this server."""
     services.runs.path(run)
-    _check_flown(services, run)
+    check_flown(services, run)
     services.disk.check()
     await asyncio.to_thread(_all_written, services)
     draft = services.uploads / uuid4().hex
@@ -89,8 +89,8 @@ async def run_evidence(run: str, services: ServicesDep) -> FileResponse:
     return AnswerFile(draft, media_type="application/zip", filename=f"{run}.zip")
 
 
-def _check_flown(services: Services, run: str) -> None:
-    """Raise `ApiError` while it is being flown."""
+def check_flown(services: Services, run: str) -> None:
+    """Raise `ApiError` while a run is being flown."""
     for host in services.hosts.all():
         if host.snapshot().run_id == run:
             raise ApiError(409, "in-use", f"run {run} is being flown on rig {host.name}")
@@ -105,9 +105,10 @@ def _all_written(services: Services) -> None:
 @router.delete("/{run}", status_code=204, responses=_IN_USE, dependencies=CHANGE)
 async def remove_run(run: str, services: ServicesDep) -> None:
     """Remove a run that is neither pinned nor being written."""
-    _check_flown(services, run)
+    check_flown(services, run)
     try:
         await asyncio.to_thread(services.runs.remove, run)
+        await asyncio.to_thread(services.curves.forget, run)
     except RunInUseError as error:
         raise ApiError(409, "in-use", str(error)) from None
 

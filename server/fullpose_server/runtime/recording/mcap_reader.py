@@ -37,6 +37,7 @@ class RecordError(Exception):
 
     def __init__(self, path: Path, why: str) -> None:
         super().__init__(f"{path}: {why}")
+        self.path = path
         self.why = why
 
 
@@ -50,7 +51,8 @@ class _Exact(BytesIO):
         return data
 
 
-def _stream(content: bytes) -> ReadDataStream:
+def stream_of(content: bytes) -> ReadDataStream:
+    """A record's content for the library to read; what is cut off raises `EndOfFile`."""
     return ReadDataStream(_Exact(content))
 
 
@@ -62,10 +64,10 @@ def recover_messages(path: Path) -> Iterator[tuple[str, Message]]:
     topics: dict[int, str] = {}
     begun = False
     with path.open("rb") as file:
-        for opcode, content in _contents(path, file):
+        for opcode, content in contents(path, file):
             begun = begun or opcode == Opcode.METADATA
             if opcode == Opcode.CHUNK:
-                for item in _decoded(content, breakup_chunk) or ():
+                for item in decoded(content, breakup_chunk) or ():
                     if isinstance(item, Channel):
                         topics[item.id] = item.topic
                     elif isinstance(item, Message) and item.channel_id in topics:
@@ -78,11 +80,11 @@ def recover_messages(path: Path) -> Iterator[tuple[str, Message]]:
 def run_of(path: Path) -> dict[str, str]:
     """The run's metadata: run_id, rig, who, plan; of an incident its alarm's code. Raises `RecordError`."""
     with path.open("rb") as file:
-        for opcode, content in _contents(path, file):
+        for opcode, content in contents(path, file):
             if opcode == Opcode.METADATA:
                 try:
-                    found = Metadata.read(_stream(content))
-                except Exception as cause:  # see `_decoded`
+                    found = Metadata.read(stream_of(content))
+                except Exception as cause:  # see `decoded`
                     raise RecordError(path, f"its run's description is damaged ({cause!r})") from cause
                 if found.name == "run":
                     return dict(found.metadata)
@@ -94,16 +96,16 @@ def is_complete(path: Path) -> bool:
     with path.open("rb") as file:
         try:
             summary = make_reader(file).get_summary()
-        except Exception:  # noqa: BLE001 - see `_decoded`
+        except Exception:  # noqa: BLE001 - see `decoded`
             return False
         if summary is None or summary.statistics is None:
             return False
         file.seek(0)
         chunks = 0
         try:
-            for opcode, content in _contents(path, file):
+            for opcode, content in contents(path, file):
                 if opcode == Opcode.CHUNK:
-                    if _decoded(content, get_chunk_data_stream) is None:
+                    if decoded(content, get_chunk_data_stream) is None:
                         return False
                     chunks += 1
         except RecordError:
@@ -111,7 +113,7 @@ def is_complete(path: Path) -> bool:
         return chunks == summary.statistics.chunk_count
 
 
-def _contents(path: Path, file: BinaryIO) -> Iterator[tuple[int, bytes]]:
+def contents(path: Path, file: BinaryIO) -> Iterator[tuple[int, bytes]]:
     """(opcode, content) of the file's records, up to where it was cut off. Raises `RecordError`."""
     if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
         raise RecordError(path, "not a record: it does not begin as one")
@@ -124,10 +126,10 @@ def _contents(path: Path, file: BinaryIO) -> Iterator[tuple[int, bytes]]:
         yield opcode, file.read(length)
 
 
-def _decoded(content: bytes, how: Callable[[Chunk, bool], _T]) -> _T | None:
+def decoded(content: bytes, how: Callable[[Chunk, bool], _T]) -> _T | None:
     """What `how` finds in a chunk, its checksum compared; None where the chunk is damaged."""
     try:
-        return how(Chunk.read(_stream(content)), True)
+        return how(Chunk.read(stream_of(content)), True)
     except Exception:  # noqa: BLE001 - damaged bytes may be anything, and each decoder has errors of its own for them
         return None
 
@@ -156,7 +158,7 @@ def read_samples(path: Path, since_seq: int = 0, limit: int | None = None) -> Sa
 
 
 def _rows(path: Path, messages: Iterator[dict[str, Any]], limit: int | None) -> Samples:
-    wanted = (_row(raw) for raw in messages)
+    wanted = (row_of(raw) for raw in messages)
     # As arrays soon: a row is ten times as large while its numbers are objects.
     parts = []
     try:
@@ -177,7 +179,8 @@ def read_events(path: Path) -> list[dict[str, Any]]:
     return [_DECODE(message.data) for topic, message in recover_messages(path) if topic == EVENTS]
 
 
-def _row(raw: dict[str, Any]) -> tuple[Any, ...]:
+def row_of(raw: dict[str, Any]) -> tuple[Any, ...]:
+    """A telemetry message as a row of `SAMPLE`. Raises what a message does that is none of a rig's."""
     values = []
     for field in FIELDS:
         value = raw.get(field.name)

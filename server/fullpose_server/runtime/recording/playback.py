@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from fullpose_server.runtime.contract.telemetry import Samples
+from fullpose_server.runtime.recording.curves import Curves
+from fullpose_server.runtime.recording.long_replay import LongReplay
 from fullpose_server.runtime.recording.mcap_reader import RecordError, Replay, read_events, run_of
 
 
@@ -22,8 +24,8 @@ class PlaybackError(Exception):
 class RunPlayback:
     """The samples of a record as of the clock. Its methods may be called from any thread."""
 
-    def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
-        """Read the whole record. Raises `RecordError`."""
+    def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic, curves: Curves | None = None) -> None:
+        """Of a record that has curves nothing is read before it is played; else all of it. Raises `RecordError`."""
         self.run = path.stem
         meta = run_of(path)
         self.who = meta.get("who", "")  # who began the run
@@ -32,8 +34,9 @@ class RunPlayback:
         except ValueError as cause:
             raise RecordError(path, f"its plan is damaged ({cause})") from cause
         self.plan: dict[str, Any] = plan if isinstance(plan, dict) else {}  # that was bound, as the record has it
-        self._replay = Replay(path)
-        self._alarms = [event for event in read_events(path) if event.get("kind") == "alarm"]
+        self._replay: Replay | LongReplay = Replay(path) if curves is None else LongReplay(curves)
+        events = read_events(path) if curves is None else curves.about.events
+        self._alarms = [event for event in events if event.get("kind") == "alarm"]
         self._clock = clock
         self._lock = threading.Lock()
         self._at = 0.0  # [s] when the clock was last set

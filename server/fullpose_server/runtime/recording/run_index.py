@@ -26,6 +26,7 @@ from fullpose_server.runtime.recording.run_summary import (
 )
 
 PIN = ".pin"  # of the mark beside a record that is to stay
+LONG_BYTES = 64_000_000  # a few minutes at 1 kHz, some seconds to read
 READING_S = 0.5  # that a list may take over records that have no summary yet: of the others it tells what they are
 _WRITTEN_S = 5.0  # a record that has not grown for so long is no longer written: its recorder was cut off
 
@@ -104,9 +105,16 @@ class RunFiles:
         return found
 
     def get(self, run: str) -> RunSummary:
-        """One run. Raises `NotFoundError`, or `FileError` for a file that is no record."""
+        """One run; of a long one that nobody has read yet only what its beginning says.
+
+        Raises `NotFoundError`, or `FileError` for a file that is no record.
+        """
+        path = self.path(run)
         try:
-            return self._summary(self.path(run))
+            # A long one that has no summary yet is not waited for: it is read in the background.
+            if path.stat().st_size > LONG_BYTES and (found := kept_summary(path) or brief(path)):
+                return found
+            return self._summary(path)
         except RecordError as error:
             raise FileError(f"{run}{RECORD}", f"a record ({error.why})") from None
 

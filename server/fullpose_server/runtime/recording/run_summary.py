@@ -10,7 +10,8 @@ import numpy as np
 
 from fullpose_server.formats.output_file import write_text
 from fullpose_server.runtime.contract.telemetry import Flag, Samples
-from fullpose_server.runtime.recording.mcap_reader import RecordError, read_record, run_of
+from fullpose_server.runtime.recording.mcap_reader import RecordError, run_of
+from fullpose_server.runtime.recording.record_chunks import chunks
 from fullpose_server.runtime.recording.record_names import began_at, rig_of
 from fullpose_server.session.states import State
 
@@ -105,45 +106,77 @@ def brief(path: Path) -> RunSummary:
 
 
 def summarise(path: Path) -> RunSummary:
-    """What the whole record says, but for whether it is complete. Raises `RecordError`."""
-    return summary_of(path, *read_record(path))
+    """What all of the record says, but for whether it is complete; never all of it in memory. Raises `RecordError`."""
+    tally = Tally()
+    events: list[dict[str, Any]] = []
+    for chunk in chunks(path):
+        tally.add(chunk.rows)
+        events += chunk.events
+    return tally.summary(path, events)
 
 
 def summary_of(path: Path, rows: Samples, events: list[dict[str, Any]]) -> RunSummary:
     """Of a record that has been read. Raises `RecordError`."""
-    begun = brief(path)
-    flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & Flag.LEAD == 0)
-    ends = [event for event in events if event.get("kind") == "run_end"]
-    ending: dict[str, Any] = ends[-1] if ends else {}
-    return replace(
-        begun,
-        end=_word(ending.get("how")),
-        end_code=_word(ending.get("code")),
-        started=float(rows["wall_ns"][0]) / 1e9 if rows.size else begun.started,
-        ended=float(rows["wall_ns"][-1]) / 1e9 if rows.size else None,
-        samples=int(rows.size),
-        lost_samples=_lost(rows, events),
-        max_solve_error_deg=_largest(rows["solve_error_deg"][flying]),
-        max_tracking_error_deg=_largest(rows["tracking_error_deg"][flying]),
-        max_lateness_us=_largest(rows["lateness_us"]),
-    )
+    tally = Tally()
+    tally.add(rows)
+    return tally.summary(path, events)
 
 
-def _lost(rows: Samples, events: list[dict[str, Any]]) -> int:
-    """How many of the run's samples are missing: between the rows, and to its beginning and end where it tells them."""
-    heads = {event.get("kind"): head for event in events if isinstance(head := event.get("head"), int)}
-    first = [int(rows["seq"][0])] if rows.size else []
-    last = [int(rows["seq"][-1])] if rows.size else []
-    if "run_begin" in heads:
-        first.append(heads["run_begin"] + 1)
-    if "run_end" in heads:
-        last.append(heads["run_end"])
-    return max(last) - min(first) + 1 - rows.size if first and last else 0
+class Tally:
+    """What a summary needs of the rows, as they come."""
 
+    def __init__(self) -> None:
+        self._largest: dict[str, float] = {}
+        self._sequence: tuple[int, int] | None = None  # of the first and the last row
+        self._wall_ns = (0, 0)
+        self._rows = 0
 
-def _largest(values: np.ndarray[Any, Any]) -> float | None:
-    seen = values[np.isfinite(values)]
-    return float(seen.max()) if seen.size else None
+    def add(self, rows: Samples) -> None:
+        """Take rows (n,)."""
+        if not rows.size:
+            return
+        flying = np.isin(rows["state"], (State.RUNNING.code, State.HELD.code)) & (rows["flags"] & Flag.LEAD == 0)
+        self._take("solve_error_deg", rows["solve_error_deg"][flying])
+        self._take("tracking_error_deg", rows["tracking_error_deg"][flying])
+        self._take("lateness_us", rows["lateness_us"])
+        first = self._sequence[0] if self._sequence else int(rows["seq"][0])
+        begun = self._wall_ns[0] if self._sequence else int(rows["wall_ns"][0])
+        self._sequence, self._wall_ns = (first, int(rows["seq"][-1])), (begun, int(rows["wall_ns"][-1]))
+        self._rows += rows.size
+
+    def summary(self, path: Path, events: list[dict[str, Any]]) -> RunSummary:
+        """The summary of the record that the rows and events are of. Raises `RecordError`."""
+        begun = brief(path)
+        ends = [event for event in events if event.get("kind") == "run_end"]
+        ending: dict[str, Any] = ends[-1] if ends else {}
+        return replace(
+            begun,
+            end=_word(ending.get("how")),
+            end_code=_word(ending.get("code")),
+            started=self._wall_ns[0] / 1e9 if self._rows else begun.started,
+            ended=self._wall_ns[1] / 1e9 if self._rows else None,
+            samples=self._rows,
+            lost_samples=self._lost(events),
+            max_solve_error_deg=self._largest.get("solve_error_deg"),
+            max_tracking_error_deg=self._largest.get("tracking_error_deg"),
+            max_lateness_us=self._largest.get("lateness_us"),
+        )
+
+    def _take(self, name: str, values: np.ndarray[Any, Any]) -> None:
+        seen = values[np.isfinite(values)]
+        if seen.size:
+            self._largest[name] = max(self._largest.get(name, -np.inf), float(seen.max()))
+
+    def _lost(self, events: list[dict[str, Any]]) -> int:
+        """How many samples are missing: between the rows, and to the run's beginning and end where it tells them."""
+        heads = {event.get("kind"): head for event in events if isinstance(head := event.get("head"), int)}
+        first = [self._sequence[0]] if self._sequence else []
+        last = [self._sequence[1]] if self._sequence else []
+        if "run_begin" in heads:
+            first.append(heads["run_begin"] + 1)
+        if "run_end" in heads:
+            last.append(heads["run_end"])
+        return max(last) - min(first) + 1 - self._rows if first and last else 0
 
 
 def _word(value: Any) -> str | None:

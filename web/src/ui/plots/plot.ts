@@ -21,6 +21,17 @@ export function ink(): Ink {
 // eslint-disable-next-line @typescript-eslint/no-unsafe-enum-assignment
 export const LOGARITHMIC: Pick<uPlot.Scale, "distr" | "log"> = { distr: 3, log: 10 };
 
+/** A curve of a stretch of time. */
+export interface SpanSeries {
+  /** Ascending times [s], and a value each. */
+  time: Float64Array;
+  values: Float64Array;
+  /** CSS variable of its colour. */
+  colour: string;
+  width?: number;
+  dash?: number[];
+}
+
 export const AXIS_FONT = '11px "Inter", system-ui, sans-serif';
 
 const plain = (value: number): string => String(value).replace("-", "−");
