@@ -129,7 +129,7 @@ def _mapped(folder: Path, columns: list[Array]) -> Reference:
 def _opened(names: list[Path]) -> tuple[Array, list[Array]]:
     if not names[0].stat().st_size:  # it never ran
         return np.empty(0), [np.empty(0)] * _VALUES
-    time, *values = (np.memmap(name, "<f8", "r") for name in names)
+    time, *values = (np.asarray(np.memmap(name, "<f8", "r")) for name in names)
     return time, values
 
 

@@ -7,6 +7,7 @@ import math
 import struct
 from collections.abc import Iterator
 from pathlib import Path
+from types import GenericAlias
 from typing import Any, NamedTuple
 
 import msgspec
@@ -37,7 +38,7 @@ def _message_type() -> type[msgspec.Struct]:
             fields.append((field.name, Any, msgspec.NODEFAULT))
         elif field.parts:
             numbers = len(field.parts)
-            fields.append((field.name, tuple[(float,) * numbers], (math.nan,) * numbers))
+            fields.append((field.name, GenericAlias(tuple, (float,) * numbers), (math.nan,) * numbers))
         else:
             fields.append(
                 (field.name, int if field.integer else float, msgspec.NODEFAULT if field.integer else math.nan)

@@ -112,8 +112,8 @@ class RunFiles:
         path = self.path(run)
         try:
             # A long one that has no summary yet is not waited for: it is read in the background.
-            if path.stat().st_size > LONG_BYTES and (found := kept_summary(path) or brief(path)):
-                return found
+            if path.stat().st_size > LONG_BYTES:
+                return kept_summary(path) or brief(path)
             return self._summary(path)
         except RecordError as error:
             raise FileError(f"{run}{RECORD}", f"a record ({error.why})") from None

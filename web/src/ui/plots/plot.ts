@@ -1,5 +1,6 @@
 /** What every uPlot chart of the console shares: colours of the theme, axes, and limits drawn as bands. */
 import type uPlot from "uplot";
+import type { CurveEvent } from "../../contract/types";
 import type { Range } from "../../rules/limits";
 
 export interface Ink {
@@ -112,4 +113,18 @@ export function withGaps(values: ArrayLike<number>, floor?: number): (number | n
   return Array.from(values, (value) =>
     Number.isNaN(value) ? null : floor === undefined ? value : Math.max(floor, value),
   );
+}
+
+const EVENT_COLOURS: Record<CurveEvent["kind"], string> = {
+  alarm: "--danger",
+  gap: "--caution",
+  command: "--accent",
+  transition: "--text-3",
+  begin: "--text-3",
+  end: "--text-3",
+};
+
+/** CSS variable of what an event is drawn with. */
+export function colourOfEvent({ kind, severity }: CurveEvent): string {
+  return severity === "warning" ? "--caution" : EVENT_COLOURS[kind];
 }
