@@ -16,6 +16,7 @@ from fullpose_server.api import errors, openapi
 from fullpose_server.api import uploads as uploading
 from fullpose_server.api.admission import Admission
 from fullpose_server.api.body_limit import BodyLimit
+from fullpose_server.api.compression import Compression
 from fullpose_server.api.console import API_PAGE, console
 from fullpose_server.api.origin import OriginGuard
 from fullpose_server.api.paths import API
@@ -110,6 +111,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.mount("/", console())
     uploads = settings.max_upload_bytes + uploading.ENVELOPE
     larger = {f"{API}/solve": settings.max_json_bytes} | dict.fromkeys(_taking_files(), uploads)
+    app.add_middleware(Compression)
     app.add_middleware(BodyLimit, settings=settings, larger=larger)
     app.add_middleware(SocketLimit, settings=settings)
     app.add_middleware(Admission)

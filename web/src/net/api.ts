@@ -97,6 +97,14 @@ export const api = {
       { rig },
       { ...(secret === undefined ? GIVEN : COMMAND), body: { action, secret: secret ?? null, reason } },
     ),
+  /** Gives the lease up, from a page that is being left. */
+  leave: (rig: string, secret: string) =>
+    request(
+      "post",
+      "/api/v1/rigs/{rig}/lease",
+      { rig },
+      { ...COMMAND, body: { action: "release", secret, reason: null }, keepalive: true },
+    ),
   stop: (rig: string) => request("post", "/api/v1/rigs/{rig}/stop", { rig }, STOP),
   estop: (rig: string) => request("post", "/api/v1/rigs/{rig}/estop", { rig }, STOP),
 

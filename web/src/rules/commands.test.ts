@@ -12,6 +12,7 @@ const ARMED: Circumstances = {
   plan: true,
   unacknowledged: 0,
   busy: false,
+  otherwise: null,
 };
 const NOTHING: Circumstances = {
   role: "viewer",
@@ -22,6 +23,7 @@ const NOTHING: Circumstances = {
   plan: false,
   unacknowledged: 3,
   busy: true,
+  otherwise: "another is loaded",
 };
 
 const enabled = (command: CommandName, now: Partial<Circumstances>): boolean =>

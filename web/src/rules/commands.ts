@@ -46,6 +46,8 @@ export interface Circumstances {
   unacknowledged: number;
   /** A command of ours is under way. */
   busy: boolean;
+  /** Why what is loaded is not to be started: it is not what is chosen; null where it is. */
+  otherwise: string | null;
 }
 
 export type Verdict = { enabled: true } | { enabled: false; why: string };
@@ -66,6 +68,7 @@ export function verdict(command: CommandName, now: Circumstances): Verdict {
   if ((look?.motion ?? !QUIET.has(command)) && now.freshness === "stale")
     return no("Data is stale: motion is disabled");
   if (!now.leased) return no("Take control first");
+  if ((command === "start" || command === "go_live") && now.otherwise !== null) return no(now.otherwise);
   if (command === "load" && !now.plan) return no("Choose a plan first");
   if (command === "acknowledge" && now.unacknowledged === 0) return no("No alarm waits");
   if (command === "reset" && now.unacknowledged > 0) return no("Acknowledge the alarms first");

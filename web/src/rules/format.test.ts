@@ -14,7 +14,14 @@ it("fixed: a real minus, no negative zero, a dash for what is missing", () => {
 
 it("scientific: an exact zero is told from a missing value", () => {
   expect(scientific(3.24e-13)).toBe("3.2e−13");
-  expect(scientific(12)).toBe("1.2e1");
+  expect([12, 81, -0.5, 1234, 1e5, -2e-7].map((each) => scientific(each))).toEqual([
+    "12.00",
+    "81.00",
+    "−0.5000",
+    "1234",
+    "1.0e5",
+    "−2.0e−7",
+  ]);
   expect(scientific(0)).toBe("0");
   expect(scientific(NaN)).toBe(MISSING);
 });

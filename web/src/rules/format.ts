@@ -13,16 +13,19 @@ export function fixed(value: number | null | undefined, digits: number): string 
   return Number(text) === 0 ? text.replace("-", "") : text.replace("-", MINUS);
 }
 
-/** An error as a power of ten, "3.2e−13"; an exact zero says so. */
+/**
+ * A figure that may be of any size, as an error is: of everyday size, from a thousandth to 100 000, in decimals, and
+ * else as a power of ten, "3.2e−13". An exact zero says so.
+ */
 export function scientific(value: number | null | undefined, digits = 1): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return MISSING;
-  return value === 0 ? "0" : value.toExponential(digits).replace("-", MINUS).replace("+", "");
+  const size = Math.abs(value);
+  if (size >= 1e-3 && size < 1e5) return fixed(value, size < 10 ? 4 : size < 1000 ? 2 : 0);
+  return value === 0 ? "0" : value.toExponential(digits).replaceAll("-", MINUS).replace("+", "");
 }
 
-/** An error of everyday size in four decimals, a smaller one as a power of ten. */
-export function small(value: number | null | undefined): string {
-  return value !== null && value !== undefined && Math.abs(value) < 1e-3 ? scientific(value) : fixed(value, 4);
-}
+/** The same rule, by the name of what it is mostly used for. */
+export const small = (value: number | null | undefined): string => scientific(value);
 
 /** "850 µs", "12.3 ms", "3.42 s", "2 min". */
 export function duration(ms: number | null | undefined): string {

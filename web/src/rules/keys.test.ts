@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import contract from "../../../docs/openapi.json";
-import { commandOfKey, type Key } from "./keys";
+import { commandOfKey, opensWith, type Key } from "./keys";
 
 const key = (name: string, more: Partial<Key> = {}): Key => ({
   key: name,
@@ -50,4 +50,13 @@ it("a key held down counts once, a combination not at all", () => {
   expect(commandOfKey(key(" ", { repeat: true }), "running", false)).toBeNull();
   expect(commandOfKey(key(" ", { modified: true }), "running", false)).toBeNull();
   expect(commandOfKey(key("a"), "running", false)).toBeNull();
+});
+
+it("? and Ctrl-K open what they name, ? never while text is typed", () => {
+  expect(opensWith(key("?"))).toBe("keys");
+  expect(opensWith(key("?", { focus: "control" }))).toBe("keys");
+  expect(opensWith(key("?", { focus: "text" }))).toBeNull();
+  for (const focus of FOCUS) expect(opensWith(key("k", { focus, modified: true, ctrl: true }))).toBe("palette");
+  expect(opensWith(key("k"))).toBeNull();
+  expect(opensWith(key("k", { modified: true }))).toBeNull();
 });

@@ -1,4 +1,5 @@
 /** What the command rules are asked about, gathered from the rig and the library. */
+import { otherwise } from "../rules/choice";
 import type { Circumstances } from "../rules/commands";
 import type { Library } from "./library.svelte";
 import type { Identity } from "./identity.svelte";
@@ -17,6 +18,7 @@ export class Gathered {
       plan: library.chosenPlan?.flyable === true && library.chosenPlan.rig === operated.name,
       unacknowledged: operated.unacknowledged,
       busy: operated.busy,
+      otherwise: otherwise(operated.session?.plan ?? null, library.chosen),
     });
   }
 }

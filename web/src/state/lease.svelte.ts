@@ -19,9 +19,13 @@ interface Request {
 interface Kept {
   token: LeaseToken | null;
   asked: Request | null;
+  /** When the page went that held it [ms since 1970]: a reload takes again what its going gave up. */
+  left?: number | null;
 }
 
-const NOTHING: Kept = { token: null, asked: null };
+const NOTHING: Kept = { token: null, asked: null, left: null };
+/** How long a page may take to come back for what it had [ms]. */
+const RELOAD_MS = 15_000;
 
 export class RigLease {
   #rig: string | null = null;
@@ -29,6 +33,7 @@ export class RigLease {
   #asked: Request | null = $state.raw(null);
   /** Whether a request is being compared with what was granted. */
   #comparing = false;
+  #left: number | null = null;
 
   /** Ours it is while we are its holder, in the epoch we were given. */
   readonly held: boolean;
@@ -55,10 +60,22 @@ export class RigLease {
     const kept = rig === null ? NOTHING : restored(rig, this.me());
     this.#token = kept.token;
     this.#asked = kept.asked;
+    this.#left = kept.left ?? null;
+  }
+
+  /** The page goes, perhaps for good: what this tab holds is given up, or others would wait until it counts as silent. */
+  leave(): void {
+    for (const rig of keptByTab()) {
+      const kept = restored(rig, this.me());
+      if (kept.token === null) continue;
+      this.api.leave(rig, kept.token.secret).catch(() => undefined); // then it falls silent by itself
+      this.#keep(rig, { ...kept, left: Date.now() });
+    }
   }
 
   /** Takes in what the stream says of it: another operator may have granted what we asked for. */
   observe(lease: Lease): void {
+    this.#comeBack(lease);
     const [rig, asked] = [this.#rig, this.#asked];
     if (rig === null || asked === null || lease.epoch === asked.epoch || lease.holder !== this.me()) return;
     if (lease.epoch !== this.#token?.epoch) void this.#compare(rig, asked, lease);
@@ -120,6 +137,13 @@ export class RigLease {
     }
   }
 
+  #comeBack(lease: Lease): void {
+    const left = this.#left;
+    if (left === null || (lease.holder === this.me() && Date.now() - left < RELOAD_MS)) return; // not given up yet
+    this.#left = null;
+    if (lease.holder === null && Date.now() - left < RELOAD_MS) void this.take();
+  }
+
   async #with(act: (rig: string) => Promise<unknown>): Promise<void> {
     if (this.#rig === null) return;
     try {
@@ -163,6 +187,7 @@ export class RigLease {
     if (rig === this.#rig) {
       this.#token = kept.token;
       this.#asked = kept.asked;
+      this.#left = kept.left ?? null;
     }
     sessionStorage.setItem(keyOf(rig), JSON.stringify({ ...kept, who: this.me() }));
   }

@@ -68,6 +68,38 @@ it("outlives a reload of the page, on its own rig alone", async () => {
   expect(after.stores.operated.lease.held).toBe(false);
 });
 
+it("is given up by a page that goes, and taken again by its reload, within moments", async () => {
+  const before = new TestConsole({ lease: givenLease(ourLease()) }).operate(session({ lease: ourLease() }));
+  await before.stores.operated.lease.take();
+  before.stores.operated.lease.leave();
+  expect(before.asked.at(-1)).toEqual(["leave", "bench", "a-secret"]);
+  before.stores.operated.close();
+  // Its word may not be there yet: then what was kept still holds.
+  const after = new TestConsole({ lease: givenLease(ourLease({ epoch: 5 }), "another-secret") });
+  after.operate(session({ lease: ourLease() }));
+  expect(after.stores.operated.lease.held).toBe(true);
+  after.tell(session({ lease: leaseOf(null, { epoch: 4 }) }));
+  await expect.poll(() => after.asked).toEqual([["lease", "bench", "take"]]);
+  after.tell(session({ lease: ourLease({ epoch: 5 }) }));
+  await expect.poll(() => after.stores.operated.lease.held).toBe(true);
+});
+
+it("is not taken again where another has it meanwhile, nor long after", async () => {
+  const before = new TestConsole({ lease: givenLease(ourLease()) }).operate(session({ lease: ourLease() }));
+  await before.stores.operated.lease.take();
+  before.stores.operated.lease.leave();
+  before.stores.operated.close();
+  const after = new TestConsole().operate(session({ lease: leaseOf("another", { epoch: 5 }) }));
+  after.tell(session({ lease: leaseOf(null, { epoch: 6 }) }));
+  expect(after.asked).toEqual([]);
+  after.stores.operated.close();
+  before.operate(session({ lease: ourLease() })).stores.operated.lease.leave();
+  vi.useFakeTimers({ now: Date.now() + 60_000 });
+  const late = new TestConsole().operate(session({ lease: leaseOf(null, { epoch: 4 }) }));
+  expect(late.asked).toEqual([]);
+  vi.useRealTimers();
+});
+
 it("that another holds is asked for, and the person is told", async () => {
   const refused = new ApiError(409, "held by another");
   const console = new TestConsole({ lease: refused }).operate(session({ lease: leaseOf("another") }));

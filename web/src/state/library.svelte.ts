@@ -14,6 +14,7 @@ import type {
 import type { Api } from "../net/api";
 import { messageOf } from "../net/errors";
 import { backoffMs } from "../net/keptSocket";
+import type { Chosen, Loaded } from "../rules/choice";
 import { Jobs } from "./jobs.svelte";
 import { Pages } from "./pages.svelte";
 import { Search } from "./search.svelte";
@@ -25,6 +26,8 @@ export class Library {
   /** Flight and plan the operator works with. */
   trajectory: string | null = $state(null);
   plan: string | null = $state(null);
+  /** A live source is what is to be flown, and no plan. */
+  live = $state(false);
   uploading: { name: string; fraction: number } | null = $state(null);
 
   readonly flights: Pages<Trajectory>;
@@ -52,6 +55,10 @@ export class Library {
   readonly plans: readonly Plan[];
   readonly chosenTrajectory: Trajectory | null;
   readonly chosenPlan: Plan | null;
+  readonly chosen: Chosen;
+  /** The loaded plan that was last made the chosen one. */
+  #followed: string | null = null;
+  #picked = false;
 
   constructor(private readonly api: Api) {
     const plans = new Jobs<Plan>(api.plans, api.plan);
@@ -77,6 +84,7 @@ export class Library {
     );
     this.chosenTrajectory = $derived(this.trajectories.find(({ sha256 }) => sha256 === this.trajectory) ?? null);
     this.chosenPlan = $derived(plans.all.find(({ id }) => id === this.plan) ?? null);
+    this.chosen = $derived({ live: this.live, flight: this.trajectory, plan: this.plan });
   }
 
   /** Reads what every page needs; a part that fails says so, leaves the others, and all is tried again until it is read. */
@@ -108,13 +116,40 @@ export class Library {
   refreshRigs = (): Promise<void> => this.#read("rigs", this.api.rigs, (rigs) => (this.rigs = rigs));
   refreshHealth = (): Promise<void> => this.#read("health", this.api.health, (health) => (this.health = health));
 
-  /** What the operator works with from now on. */
-  chooseTrajectory(sha256: string | null): void {
+  /** What the operator works with from now on; `picked`: a person's choice, and no suggestion of ours. */
+  chooseTrajectory(sha256: string | null, picked = true): void {
+    this.#picked ||= picked;
+    if (sha256 !== this.trajectory && this.chosenPlan?.trajectory !== sha256) this.plan = null;
     this.trajectory = sha256;
   }
 
-  choosePlan(id: string | null): void {
+  choosePlan(id: string | null, picked = true): void {
+    this.#picked ||= picked;
     this.plan = id;
+  }
+
+  chooseLive(live: boolean): void {
+    this.live = live;
+  }
+
+  /** What is newly loaded becomes what is chosen; what a person chose before the first is known stays. */
+  async follow(loaded: Loaded): Promise<void> {
+    const which = loaded === null ? null : loaded.live ? "live" : loaded.plan_id;
+    const [first, known] = [this.#followed === null, this.#followed === which];
+    if (which === null || known) return;
+    this.#followed = which;
+    if (first && this.#picked) return;
+    this.live = which === "live";
+    if (this.live) return;
+    try {
+      const plan = this.plans.find(({ id }) => id === which) ?? (await this.api.plan(which));
+      if (this.#followed !== which) return;
+      this.planning.put(plan);
+      this.trajectory = plan.trajectory;
+      this.plan = plan.id;
+    } catch {
+      this.#followed = null; // asked for again with the next word of the rig
+    }
   }
 
   async deleteTrajectory(sha256: string): Promise<void> {
@@ -162,7 +197,7 @@ export class Library {
     try {
       const stored = await this.api.upload(file, how, (fraction) => (this.uploading = { name: file.name, fraction }));
       await Promise.all([this.flights.refresh(), this.searches.flights.refresh()]);
-      this.trajectory = stored.sha256;
+      this.chooseTrajectory(stored.sha256);
       this.plan = null;
       return stored;
     } finally {
@@ -173,7 +208,7 @@ export class Library {
   async createPlan(trajectory: string, rig: string, method: string, toleranceDeg: number | null = null): Promise<Plan> {
     const plan = await this.api.createPlan(trajectory, rig, method, toleranceDeg);
     this.planning.put(plan);
-    this.plan = plan.id;
+    this.choosePlan(plan.id);
     return plan;
   }
 

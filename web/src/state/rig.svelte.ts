@@ -110,6 +110,15 @@ export class Operated implements Feed {
     }
   }
 
+  /** Gives commands one after another, to the first that is refused; tells whether all were taken. */
+  async inTurn(commands: readonly CommandName[], plan: string | null): Promise<boolean> {
+    for (const name of commands) {
+      const done = name === "load" ? await this.command("load", { plan }) : await this.command(name, {});
+      if (!done) return false;
+    }
+    return true;
+  }
+
   #link(event: LinkEvent): void {
     this.link = reduce(this.link, event);
     if (event.type !== "frame") this.#look();

@@ -4,6 +4,7 @@ import { api, type Api } from "../net/api";
 import { openStopLine, type OpenStopLine } from "../net/stopChannel";
 import { connect, type Connect } from "../net/stream";
 import { watchedApi, watchedConnect, watchedLine } from "../net/watched";
+import { Alerts } from "./alerts.svelte";
 import { Gathered } from "./circumstances.svelte";
 import { Identity } from "./identity.svelte";
 import { Library } from "./library.svelte";
@@ -25,6 +26,7 @@ export interface Stores extends Lasting {
   readonly library: Library;
   readonly notices: Notices;
   readonly operated: Operated;
+  readonly alerts: Alerts;
   readonly circumstances: Gathered;
   /** Closes every connection, and asks for nothing more. */
   readonly close: () => void;
@@ -52,6 +54,7 @@ export function makeStores(
     library,
     notices,
     operated,
+    alerts: new Alerts(),
     circumstances: new Gathered(operated, library, identity),
     close: () => {
       operated.close();

@@ -9,5 +9,6 @@ export function keyOf(event: KeyboardEvent): Key {
   const { target, key, repeat } = event;
   const within = (selector: string): boolean => target instanceof Element && target.closest(selector) !== null;
   const focus = within(TEXT) ? "text" : within(CONTROL) ? "control" : "none";
-  return { key, repeat, focus, modified: event.ctrlKey || event.altKey || event.metaKey };
+  const ctrl = (event.ctrlKey || event.metaKey) && !event.altKey;
+  return { key, repeat, focus, modified: event.ctrlKey || event.altKey || event.metaKey, ctrl };
 }

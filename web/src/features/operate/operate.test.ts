@@ -2,6 +2,7 @@
 import { fireEvent, screen, within } from "@testing-library/svelte";
 import { tick } from "svelte";
 import { beforeEach, describe, expect, it } from "vitest";
+import type { Plan } from "../../contract/types";
 import { ApiError } from "../../net/errors";
 import { STALE_MS } from "../../rules/freshness";
 import { TestConsole } from "../../testing/console";
@@ -168,5 +169,81 @@ describe("alarms", () => {
     await fireEvent.click(screen.getByRole("button", { name: /Rig process/ }));
     expect(screen.getByText("Drive hangs in").nextElementSibling?.textContent).toBe("write");
     expect(screen.getByText(/^Drive read/).nextElementSibling?.textContent).toBe("41 / 2210 µs");
+  });
+});
+
+describe("what is loaded and what is chosen", () => {
+  const planOf = (id: string, name: string): Plan =>
+    ({
+      id,
+      trajectory: name,
+      trajectory_name: name,
+      rig: "bench",
+      method: "plan",
+      status: "done",
+      flyable: true,
+      refusal: null,
+      remedy: null,
+      report: null,
+      created_at: "2026-11-01T12:00:00Z",
+    }) as unknown as Plan;
+  const ref = { plan_id: "p1", name: "Loop", live: false, plan_hash: "h", rig_hash: "r", duration_s: 10 };
+  const allowed = ["start", "disarm", "unload", "load", "arm"];
+
+  it("are one: Start names its flight, and is off while another is chosen; one step loads and arms that, asked first", async () => {
+    const console = await inControl({ plan: ref, allowed });
+    const { library } = console.stores;
+    library.planning.put({ ...planOf("p2", "Roll") });
+    library.planning.put({ ...planOf("p1", "Loop") });
+    console.show(CommandBar, {});
+    console.show(FlightPanel, {});
+    await expect.poll(() => library.plan).toBe("p1");
+    expect(command("start").textContent).toContain("Loop");
+    expect(command("start").disabled).toBe(false);
+    library.chooseTrajectory("Roll");
+    await tick();
+    library.choosePlan("p2");
+    await tick();
+    expect(command("start").disabled).toBe(true);
+    expect(command("start").title).toContain("Loop");
+    await fireEvent.click(screen.getByRole("button", { name: /^Load and arm/ }));
+    const question = within(screen.getByRole("dialog", { name: /Load and arm Roll/ }));
+    expect(console.asked.filter(([what]) => what === "command")).toEqual([]);
+    await fireEvent.click(question.getByRole("button", { name: "Load and arm" }));
+    await expect
+      .poll(() => console.asked.filter(([what]) => what === "command").map(([, , name, args]) => [name, args]))
+      .toEqual([
+        ["disarm", {}],
+        ["unload", {}],
+        ["load", { plan: "p2" }],
+        ["arm", {}],
+      ]);
+  });
+
+  it("where nothing is loaded one press loads and arms what is chosen", async () => {
+    const console = await inControl({ state: "idle", allowed: ["load"] });
+    const { library } = console.stores;
+    library.planning.put(planOf("p1", "Loop"));
+    library.chooseTrajectory("Loop");
+    library.choosePlan("p1");
+    console.show(FlightPanel, {});
+    await fireEvent.click(screen.getByRole("button", { name: "Load and arm" }));
+    await expect.poll(() => console.asked.filter(([what]) => what === "command")).toHaveLength(2);
+    expect(screen.queryByRole("dialog")).toBeNull();
+  });
+
+  it("a step that is refused ends the steps", async () => {
+    const console = await inControl(
+      { state: "idle", allowed: ["load"] },
+      { command: new ApiError(409, "another rig's plan") },
+    );
+    const { library } = console.stores;
+    library.planning.put(planOf("p1", "Loop"));
+    library.chooseTrajectory("Loop");
+    library.choosePlan("p1");
+    console.show(FlightPanel, {});
+    await fireEvent.click(screen.getByRole("button", { name: "Load and arm" }));
+    await expect.poll(() => console.stores.notices.all).toHaveLength(1);
+    expect(console.asked.filter(([what]) => what === "command")).toHaveLength(1);
   });
 });
