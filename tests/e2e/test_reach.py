@@ -79,13 +79,28 @@ OVERPRINTS = """() => {
 }"""
 
 
+# Draws the longest of what scrolls on the page up by its height; whether there was more.
+SCROLL_ON = """() => {
+  const scrollers = [...document.querySelectorAll("main, main *")].filter(
+    (e) => e.scrollHeight > e.clientHeight + 4 && ["auto", "scroll"].includes(getComputedStyle(e).overflowY)
+  );
+  const longest = scrollers.sort((a, b) => b.clientHeight * b.clientWidth - a.clientHeight * a.clientWidth)[0];
+  if (!longest || longest.scrollTop + longest.clientHeight >= longest.scrollHeight - 4) return false;
+  longest.scrollTop += longest.clientHeight;
+  return true;
+}"""
+
+
 def check(page: Page, where: str) -> None:
     """Hold all of it on the page as it is now."""
     assert page.evaluate(OUT_OF_REACH, [".stops button", FINGER_PX]) == [], where
     assert page.locator(".stops button").count() == 2, where
     wide = page.evaluate("[document.documentElement.scrollWidth, document.body.scrollWidth, innerWidth]")
     assert max(wide[:2]) <= wide[2], where
-    assert page.evaluate(OVERPRINTS) == [], where
+    over = page.evaluate(OVERPRINTS)
+    while page.evaluate(SCROLL_ON):
+        over += page.evaluate(OVERPRINTS)
+    assert over == [], where
 
 
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: str(screen["width"]))

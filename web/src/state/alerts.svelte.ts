@@ -17,7 +17,7 @@ export interface Signals {
 export class Alerts {
   /** Null while nothing was chosen. */
   on: boolean | null = $state(null);
-  readonly #known = new Set<string>();
+  #known: readonly string[] = [];
   #first = true;
 
   constructor(private readonly signals: Signals = BROWSER) {
@@ -35,14 +35,14 @@ export class Alerts {
 
   /** Another rig is operated: what stands there is no news. */
   anew(): void {
-    this.#known.clear();
+    this.#known = [];
     this.#first = true;
   }
 
   /** Takes in the alarms that wait: what is new is heard, and shown where the page is not in sight. */
   observe(rig: string, waiting: readonly Alarm[], hidden: boolean): void {
-    const fresh = waiting.filter((alarm) => !this.#known.has(keyOf(alarm)));
-    for (const alarm of fresh) this.#known.add(keyOf(alarm));
+    const fresh = waiting.filter((alarm) => !this.#known.includes(keyOf(alarm)));
+    this.#known = [...this.#known, ...fresh.map(keyOf)];
     const first = this.#first;
     this.#first = false;
     if (first || fresh.length === 0 || this.on !== true) return;
