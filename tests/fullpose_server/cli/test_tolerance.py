@@ -156,10 +156,12 @@ def test_what_smoothing_leaves_of_it_is_the_planners(tmp_path: Path) -> None:
     assert made["deviation_deg"]["max"] == 0.0
 
 
-def test_a_flight_just_beyond_a_limit_is_told_the_tolerance_that_helps(tmp_path: Path) -> None:
-    """A roll past the inner frame's stop, held there by pitch: what is suggested flies it."""
-    flight = tmp_path / "near.csv"
-    rows = "".join(f"{t},0,0,{330.0 * t}\n" for t in np.arange(0.0, 1.0, 0.02).round(3).tolist())
+def test_a_flight_beyond_a_limit_is_told_the_tolerance_that_helps(tmp_path: Path) -> None:
+    """A roll that is too fast for the inner frame's stops: what is suggested flies it."""
+    flight = tmp_path / "roll.csv"
+    time = np.arange(0.0, 1.5, 0.02).round(3)
+    angles = np.stack([time, 20.0 * np.sin(time), 5.0 * np.sin(2.0 * time), 400.0 * time], axis=1)
+    rows = "".join(",".join(map(repr, row)) + "\n" for row in angles.tolist())
     flight.write_text(f"time_s,yaw_deg,pitch_deg,roll_deg\n{rows}")
     refused = solved(flight, tmp_path)
     assert refused.exit_code == 3
