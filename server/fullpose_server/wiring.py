@@ -25,6 +25,7 @@ from fullpose_server.api.provider import Provider
 from fullpose_server.errors import DamagedError, ServerError
 from fullpose_server.formats.plan_folder import rig_hash
 from fullpose_server.formats.rig_file import RigStore
+from fullpose_server.formats.saved_profiles import SavedProfiles
 from fullpose_server.location import DATABASE, PostgresqlUrl
 from fullpose_server.operating import GuardConfig, OperatingConfig, Tolerance
 from fullpose_server.planning.comparisons import Comparisons
@@ -160,6 +161,7 @@ def _build(settings: Settings, folder: Path, database: Database, scenes: SceneSe
         settings=settings,
         database=database,
         rigs=rigs,
+        profiles=SavedProfiles(folder / "profiles"),
         trajectories=trajectories,
         plans=plans,
         queue=PlanQueue(plans, _PlanRequests(rigs, trajectories, plans).request),

@@ -7,7 +7,8 @@ import pytest
 
 from fullpose.rig import builtin_rigs
 from fullpose_server.formats.rig_document import RigDocument
-from fullpose_server.formats.rig_toml import rig_toml, toml
+from fullpose_server.formats.rig_toml import rig_toml
+from fullpose_server.formats.toml_text import toml
 from tools.rig_schema import TARGET, schema
 
 

@@ -22,6 +22,7 @@ from fullpose_server.api.provider import Provider
 from fullpose_server.api.stopping import is_name, who_stops
 from fullpose_server.api.streams.frame_source import FrameSource
 from fullpose_server.formats.rig_file import RigStore
+from fullpose_server.formats.saved_profiles import SavedProfiles
 from fullpose_server.people.admitted import Credential
 from fullpose_server.people.attempts import Attempts
 from fullpose_server.planning.comparisons import Comparisons
@@ -62,6 +63,7 @@ class Services:
     settings: Settings
     database: Database
     rigs: RigStore
+    profiles: SavedProfiles
     trajectories: TrajectoryStore
     plans: PlanStore
     queue: PlanQueue

@@ -5,6 +5,7 @@ from typing import Any
 
 from fullpose_server.api.problems import ApiError
 from fullpose_server.formats.profile import shipped
+from fullpose_server.formats.saved_profiles import SavedProfiles
 from fullpose_server.formats.trajectory import Convention
 
 _FLAGS = {
@@ -18,7 +19,7 @@ READING_FIELDS: dict[str, Any] = {
         "enum": [each.value for each in Convention],
         "description": "The axes it is written in. Default: those of its profile",
     },
-    "profile": {"type": "string", "description": "Which column is what, by a shipped name. Default: guessed"},
+    "profile": {"type": "string", "description": "Which column is what, by the name of a profile. Default: guessed"},
     "columns": {"type": "string", "description": "A column map as JSON (`ColumnMap`), in the place of a profile"},
     "source": {
         "type": "string",
@@ -28,14 +29,18 @@ READING_FIELDS: dict[str, Any] = {
 }
 
 
-def reading_options(fields: Mapping[str, str]) -> dict[str, Any]:
+def reading_options(fields: Mapping[str, str], saved: SavedProfiles) -> dict[str, Any]:
     """The fields of `formats.read_options.ReadOptions`, for `json`. Raises `ApiError` 422."""
     told = {name: text.strip() for name, text in fields.items()}
     how: dict[str, Any] = {
         name: told[name] for name in ("convention", "profile", "columns", "source") if told.get(name)
     }
     _check("convention", how.get("convention"), [each.value for each in Convention])
-    _check("profile", how.get("profile"), list(shipped()))  # a name: no file of the server's
+    if (profile := how.get("profile")) is not None and profile not in shipped():  # a name: no path of a client's
+        path = saved.path(profile)
+        if path is None:
+            _check("profile", profile, [*shipped(), *saved.all()])
+        how["profile"] = str(path)
     for name in _FLAGS:
         if told.get(name):
             _check(name, told[name], ["true", "false"])

@@ -48,7 +48,7 @@ def read_flight(path: Path, asked: ReadingArguments, rig: "Rig", start: str | No
     from fullpose_server.formats.importers.columns import UNBOUNDED
     from fullpose_server.formats.trajectory_file import read_trajectory
 
-    with progress_bar("read") as progress:
+    with progress_bar("read", lines=True) as progress:
         trajectory = read_trajectory(path, bounds=replace(UNBOUNDED, progress=progress), options=how)
     taken = input_report(path, trajectory)
     return Flight(trajectory.time, trajectory.q, pose, trajectory.warnings, taken, statements(path, trajectory))

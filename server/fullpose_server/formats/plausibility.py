@@ -74,11 +74,12 @@ def angle_cautions(angles: Angles) -> Iterator[Caution]:
 
 def _sentinels(angles: Angles, column: int) -> Iterator[Caution]:
     values = angles.values[column]
-    size = np.abs(values)
+    large = np.flatnonzero(np.abs(values) >= 0.9 * min(SENTINELS))  # few of a long record
+    size = np.abs(values[large])
     coded = size >= HUGE
     for sentinel in SENTINELS:
         coded |= np.abs(size - sentinel) <= 1e-9 * sentinel
-    rows = np.flatnonzero(coded)
+    rows = large[coded]
     if rows.size == values.size and np.ptp(values) == 0.0:
         yield angles.at("sentinel", column, 0, "a code for no value, not an angle (every sample)")
     if not rows.size or rows.size == values.size:

@@ -35,7 +35,7 @@ from fullpose_server.version import VERSION
 
 FORMAT = 1
 MANIFEST = "manifest.json"
-FOLDERS = ("trajectories", "plans", "comparisons", "runs")
+FOLDERS = ("trajectories", "plans", "comparisons", "runs", "profiles")
 RIGS = "rigs"  # of these the files, not the folders of their processes
 SECRET = (DATABASE, EVIDENCE_KEY)  # at the top, readable by their owner alone
 SCRATCH = ".backup-"

@@ -465,6 +465,50 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/profiles": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Profiles
+         * @description All profiles, those that ship first.
+         */
+        get: operations["list_profiles_api_v1_profiles_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/profiles/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Save Profile
+         * @description Save a column map under a name, by which an upload may ask for it.
+         */
+        put: operations["save_profile_api_v1_profiles__name__put"];
+        post?: never;
+        /**
+         * Remove Profile
+         * @description Remove a saved profile. Flights that were read by it stay.
+         */
+        delete: operations["remove_profile_api_v1_profiles__name__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/reading": {
         parameters: {
             query?: never;
@@ -3271,6 +3315,38 @@ export interface components {
             type: string;
         };
         /**
+         * ProfileIn
+         * @description A column map to be saved.
+         */
+        ProfileIn: {
+            /**
+             * About
+             * @default
+             */
+            about: string;
+            columns: components["schemas"]["ColumnMap"];
+        };
+        /**
+         * ProfileOut
+         * @description A named profile.
+         */
+        ProfileOut: {
+            /** About */
+            about: string;
+            /**
+             * Axes
+             * @enum {string}
+             */
+            axes: "nue" | "ned" | "enu";
+            /** Name */
+            name: string;
+            /**
+             * Saved
+             * @description By a person, on this server; others ship
+             */
+            saved: boolean;
+        };
+        /**
          * ProgressOut
          * @description How far a job is.
          */
@@ -4510,7 +4586,7 @@ export interface components {
             /** Frame */
             frame: ("base" | "outer" | "middle" | "inner") | null;
             /** Limit */
-            limit: ("position" | "rate" | "acceleration") | null;
+            limit: ("position" | "rate" | "acceleration" | "jerk") | null;
             /**
              * Margin
              * @description Per cent, rounded down; negative beyond the limit
@@ -7282,6 +7358,285 @@ export interface operations {
             };
         };
     };
+    list_profiles_api_v1_profiles_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ProfileOut"][];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    save_profile_api_v1_profiles__name__put: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ProfileIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ProfileOut"];
+                };
+            };
+            /** @description The body is not what its type says */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No such thing */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The rest of the request did not come */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A profile that ships has the name */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Larger than a bound of this server */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No room on the disk */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    remove_profile_api_v1_profiles__name__delete: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Who commands, while no users are configured: a name for the lease and the audit */
+                "x-fullpose-client"?: string | null;
+            };
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Nobody signed in, where people are configured */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A foreign page, a foreign name of this server, or a role that is not enough */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description None of that name */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It ships with Fullpose */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database or a process that it takes does not answer */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No room on the disk */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Any error, as a problem document */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_file_api_v1_reading_post: {
         parameters: {
             query?: {
@@ -7316,7 +7671,7 @@ export interface operations {
                     drop_duplicates?: boolean;
                     /** Format: binary */
                     file: string;
-                    /** @description Which column is what, by a shipped name. Default: guessed */
+                    /** @description Which column is what, by the name of a profile. Default: guessed */
                     profile?: string;
                     /** @description Of a file with several attitudes: the topic, message, group or sheet. Default: the only one */
                     source?: string;
@@ -9767,7 +10122,7 @@ export interface operations {
                     file: string;
                     /** @description Default: the file's name */
                     name?: string;
-                    /** @description Which column is what, by a shipped name. Default: guessed */
+                    /** @description Which column is what, by the name of a profile. Default: guessed */
                     profile?: string;
                     /** @description Of a file with several attitudes: the topic, message, group or sheet. Default: the only one */
                     source?: string;

@@ -18,6 +18,8 @@ export type Comparison = Schemas["ComparisonOut"];
 /** What there is to draw of a run, and what happened in it. */
 export type Curves = Schemas["CurvesOut"];
 export type CurveEvent = Schemas["CurveEvent"];
+/** Which columns of a file are its time and its attitude. */
+export type ColumnMap = Schemas["ColumnMap"];
 export type Convention = NonNullable<FlightForm["convention"]>;
 /** A kind of file that plans and runs are downloaded as. */
 export type ExportKind = Schemas["ExportKindOut"];
@@ -27,6 +29,7 @@ export type Diagnosis = Schemas["DiagnosisOut"];
 export type FlightForm = paths["/api/v1/trajectories"]["post"]["requestBody"]["content"]["multipart/form-data"];
 /** How a file is to be read; what is left out is guessed. */
 export type HowToRead = Omit<FlightForm, "file" | "name">;
+export type Profile = Schemas["ProfileOut"];
 export type ReadingPreview = Schemas["ReadingPreview"];
 /** One frame's limits in degrees; null for no limit. */
 export type FrameLimits = Omit<Schemas["FrameOut"], "weight">;

@@ -2,6 +2,7 @@
 import type {
   AlarmQuery,
   ArgsOf,
+  ColumnMap,
   CommandBody,
   CommandName,
   ExportFormat,
@@ -60,6 +61,10 @@ export const api = {
   deleteTrajectory: (sha256: string) => request("delete", "/api/v1/trajectories/{sha256}", { sha256 }, READ),
   upload,
   lookAt,
+  profiles: () => request("get", "/api/v1/profiles", {}, READ),
+  saveProfile: (name: string, about: string, columns: ColumnMap) =>
+    request("put", "/api/v1/profiles/{name}", { name }, { ...READ, body: { about, columns } }),
+  removeProfile: (name: string) => request("delete", "/api/v1/profiles/{name}", { name }, READ),
 
   plans: (before: string | null = null, wanted: Searched = {}) =>
     page("/api/v1/plans", {}, wanted, before, READ.withinMs),

@@ -9,21 +9,25 @@ from fullpose_server.formats.choose_map import choose
 from fullpose_server.formats.importers.columns import Bounds
 from fullpose_server.formats.importers.registry import importer_of, read_tables
 from fullpose_server.formats.importers.table import Table
-from fullpose_server.formats.profile import shipped
+from fullpose_server.formats.profile import Profile, shipped
 from fullpose_server.formats.read_options import ReadOptions
+from fullpose_server.formats.saved_profiles import SavedProfiles
 from fullpose_server.formats.trajectory_file import flight_chosen
 from fullpose_server.formats.visible import visible
 
 MOST_COLUMNS = 200  # that a person looks through
 
 
-def reading_preview(path: Path, file: str, bounds: Bounds, options: ReadOptions, points: int) -> dict[str, Any]:
-    """The preview as JSON-ready values, about `points` samples of the flight.
+def reading_preview(
+    path: Path, file: str, bounds: Bounds, options: ReadOptions, points: int, saved: str
+) -> dict[str, Any]:
+    """The preview as JSON-ready values, about `points` samples of the flight; `saved`: the folder of people's profiles.
 
     What does not make a flight is in `problem`: a person can say otherwise. Raises as `read_tables`.
     """
     tables = read_tables(path, file, bounds, importer_of(path, file, file))
-    document = _of_table(tables[0], tables) | {
+    profiles = [*SavedProfiles(Path(saved)).all().values(), *shipped().values()]
+    document = _of_table(tables[0], tables, profiles) | {
         "columns": None,
         "profile": None,
         "problem": None,
@@ -32,7 +36,7 @@ def reading_preview(path: Path, file: str, bounds: Bounds, options: ReadOptions,
     }
     try:
         chosen = choose(tables, options)
-        document |= _of_table(chosen.table, tables)
+        document |= _of_table(chosen.table, tables, profiles)
         document |= {"columns": chosen.columns.model_dump(mode="json"), "profile": chosen.profile}
         flight = flight_chosen(chosen, options)
     except FileError as error:
@@ -49,7 +53,7 @@ def reading_preview(path: Path, file: str, bounds: Bounds, options: ReadOptions,
     }
 
 
-def _of_table(table: Table, tables: tuple[Table, ...]) -> dict[str, Any]:
+def _of_table(table: Table, tables: tuple[Table, ...], profiles: list[Profile]) -> dict[str, Any]:
     names = table.names[:MOST_COLUMNS]
     return {
         "format": table.format,
@@ -58,7 +62,5 @@ def _of_table(table: Table, tables: tuple[Table, ...]) -> dict[str, Any]:
         "names": list(names),
         "units": [table.unit(name) for name in names],
         "head": [[visible(cell) for cell in row[: len(names)]] for row in table.head],
-        "profiles": [
-            {"name": each.name, "about": each.about} for each in shipped().values() if not each.missing(table)
-        ],
+        "profiles": [{"name": each.name, "about": each.about} for each in profiles if not each.missing(table)],
     }

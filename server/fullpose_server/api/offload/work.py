@@ -81,6 +81,7 @@ class PreviewRequest(ReadRequest):
     """An upload that is looked at and not stored: `folder` is where the answer goes."""
 
     points: int = 0
+    profiles: str = ""  # the folder of those that people have saved
 
 
 @dataclass(frozen=True)
@@ -135,7 +136,9 @@ def _preview(values: Mapping[str, Any], _progress: Progress) -> dict[str, Any]:
     from fullpose_server.api.offload.reading import reading_preview  # pages' thinning, for those who look first
 
     asked = PreviewRequest(**values)
-    document = reading_preview(Path(asked.source), asked.file, asked.bounds, asked.options, asked.points)
+    document = reading_preview(
+        Path(asked.source), asked.file, asked.bounds, asked.options, asked.points, asked.profiles
+    )
     Path(asked.folder).write_text(ReadingPreview.model_validate(document).model_dump_json(), encoding="utf-8")
     return {}
 

@@ -41,8 +41,9 @@ async def read_file(
             columns=settings.max_upload_columns,
             bytes=settings.max_upload_bytes,
             file=upload.filename or "upload",
-            how=reading_options(upload.fields),
+            how=reading_options(upload.fields, services.profiles),
             points=points,
+            profiles=str(services.profiles.folder),
         )
         return await answered(services, Work.PREVIEW, asked, answer)
     finally:

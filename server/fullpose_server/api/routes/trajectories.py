@@ -78,7 +78,7 @@ async def add_trajectory(request: Request, response: Response, services: Service
             upload = await receive_form(request, source, settings.max_upload_bytes)
             file = upload.filename or "upload"
             asked = _read_request(services, source, folder)
-            asked = replace(asked, file=file, how=reading_options(upload.fields))
+            asked = replace(asked, file=file, how=reading_options(upload.fields, services.profiles))
             made = await services.offload.run(Work.READ_FILE, asked.to_json())
             name = upload.fields.get("name", "").strip() or Path(file).stem or file
         elif kind == "application/json":

@@ -132,12 +132,18 @@ def _columns(text: _Text, wanted: tuple[str, ...], cleaned: bool) -> dict[str, A
             done = min(size, done + _BLOCK_BYTES)
             if progress is not None:
                 progress(done, size)
-            part = {name: block.column(name).to_numpy(zero_copy_only=False) for name in wanted}
+            part = {name: _numbers(block.column(name)) for name in wanted}
             for name, pieces in stamps.items():
                 pieces.append(part.pop(name))
             if doubles:
                 filling.add(part)
     return {**filling.columns(), **{name: np.concatenate(pieces) for name, pieces in stamps.items()}}
+
+
+def _numbers(array: Any) -> Any:
+    """The numbers (n,) of an Arrow array without gaps. Its own `to_numpy` imports pandas, where that is installed."""
+    kind = np.int64 if pa.types.is_int64(array.type) else np.float64
+    return np.frombuffer(array.buffers()[1], kind, len(array), array.offset * 8) if len(array) else np.empty(0, kind)
 
 
 def _rows(text: _Text) -> Iterator[tuple[int, list[str]]]:
