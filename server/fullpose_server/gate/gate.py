@@ -2,7 +2,7 @@
 handed to the server, the connection itself with what was read of it.
 
 It needs no disk, and no answer of the server, to stop a rig. It runs in a process of its own (`process`), and in the
-server for as long as there is none (`stand_in`).
+server for as long as there is none (`substitute`).
 """
 
 import asyncio

@@ -17,7 +17,7 @@ from fullpose_server.gate import messages
 from fullpose_server.gate.beat import Beat
 from fullpose_server.gate.hanging import end_if_it_hangs
 from fullpose_server.gate.served import Connections
-from fullpose_server.gate.stand_in import StandIn
+from fullpose_server.gate.substitute import Substitute
 from fullpose_server.gate.waker import keep_awake
 from fullpose_server.logs import LogSettings
 from fullpose_server.people.admitted import Admitted
@@ -109,9 +109,9 @@ class Keeper:
         self._loop = asyncio.get_running_loop()
         self._ending = False
         self._newest = gate  # of which others are spawned
-        self._gate: GateProcess | StandIn = gate
+        self._gate: GateProcess | Substitute = gate
         self._spare: GateProcess | None = None
-        self._past: list[GateProcess | StandIn] = []  # that are to be ended
+        self._past: list[GateProcess | Substitute] = []  # that are to be ended
         self._heard = self._since = time.monotonic()
         self._begun = False  # it has told something
         self._untold: deque[messages.ToGate] = deque()
@@ -163,7 +163,7 @@ class Keeper:
             self._have_a_spare()
 
     def _have_a_spare(self) -> None:
-        alone = isinstance(self._gate, StandIn)
+        alone = isinstance(self._gate, Substitute)
         if self._spare is not None and self._spare.process.poll() is not None:
             self._past.append(self._spare)
             self._spare = None
@@ -174,18 +174,18 @@ class Keeper:
             spare, self._spare = self._spare, None
             self._replace(spare)
 
-    def _replace(self, gate: GateProcess | StandIn) -> None:
+    def _replace(self, gate: GateProcess | Substitute) -> None:
         past, self._gate = self._gate, gate
         self._past.append(past)
         self._loop.remove_writer(past.link)
-        if isinstance(past, StandIn):
+        if isinstance(past, Substitute):
             past.retire()  # and is heard until its end
         self._status.down_since = None if isinstance(gate, GateProcess) else time.time()
         self._begin()
 
     def _lost(self, why: str) -> None:
         gate = self._gate
-        if isinstance(gate, StandIn):
+        if isinstance(gate, Substitute):
             return
         log.error("the stop gate, process %d, is replaced: %s", gate.process.pid, why)
         self._loop.remove_reader(gate.link)
@@ -193,7 +193,7 @@ class Keeper:
             gate.process.kill()
         spare = self._spare
         if spare is None or not spare.ready:
-            self._replace(StandIn(self._listener, gate.proxies))
+            self._replace(Substitute(self._listener, gate.proxies))
         else:
             self._spare = None
             self._replace(spare)
@@ -229,7 +229,7 @@ class Keeper:
 
     # --- what it says ---
 
-    def _hear(self, gate: GateProcess | StandIn) -> None:
+    def _hear(self, gate: GateProcess | Substitute) -> None:
         for _ in range(_AT_ONCE):
             try:
                 message = messages.for_server(gate.link)

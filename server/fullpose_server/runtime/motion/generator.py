@@ -106,7 +106,7 @@ class Motion:
         self.x, self.v, self.a = np.zeros(4), np.zeros(4), np.zeros(4)
         self.q = np.full(4, math.nan)
         self.x1, self.v1, self.a1 = np.zeros(4), np.zeros(4), np.zeros(4)
-        self.jerk_given_way = False  # a brake is beyond a jerk limit, since a limit of position or rate comes first
+        self.jerk_yielded = False  # a brake is beyond a jerk limit, since a limit of position or rate comes first
         self.q1 = np.full(4, math.nan)
         self._player: PathPlayer | None = None
         self._limits = (rig.position_min, rig.position_max, rig.max_acceleration)
@@ -135,7 +135,7 @@ class Motion:
         self._task = _REST
         self.x[:] = self.x1[:] = position
         self.v[:] = self.v1[:] = self.a[:] = self.a1[:] = 0.0
-        self.jerk_given_way = False
+        self.jerk_yielded = False
         self.q[:] = self.q1[:] = math.nan
 
     def plan_start(self) -> PointMove:
@@ -180,7 +180,7 @@ class Motion:
             return None
         state = (self.x1, self.v1, self.a1)
         chosen = jerk_braking(self._rig, self._dt, state, share, fastest=fastest)
-        self.jerk_given_way = self.jerk_given_way or chosen.given_way
+        self.jerk_yielded = self.jerk_yielded or chosen.jerk_yielded
         return chosen
 
     def _loaded(self) -> PathPlayer:
@@ -216,8 +216,8 @@ class Motion:
     def _brake_on(self, braking: Braking) -> Event | None:
         rest = brake_step(self._dt, braking.deceleration, self.x1, self.v1, self.x, self.v)
         if braking.jerk_limited is not None:
-            ways = braking.jerk_limited.ways
-            rest = all(way is not None or self.v[i] == 0.0 for i, way in enumerate(ways))
+            profiles = braking.jerk_limited.profiles
+            rest = all(profile is not None or self.v[i] == 0.0 for i, profile in enumerate(profiles))
             time = braking.time + self._dt
             rest = braking.jerk_limited.positions(time, self.x) and rest
             self._task = replace(braking, time=time)
@@ -231,8 +231,8 @@ class Motion:
         self.x1[:] = self.x
         self.v1[:] = self.v
         self.a1[:] = self.a
-        if self.jerk_given_way and self._task is _REST and not self.a1.any():
-            self.jerk_given_way = False
+        if self.jerk_yielded and self._task is _REST and not self.a1.any():
+            self.jerk_yielded = False
         self.q1[:] = self.q
 
     def solve_error(self, axes: NDArray[np.int64]) -> float:
@@ -248,8 +248,8 @@ class Motion:
 
     @property
     def jerk_from(self) -> Array | None:
-        """The last acceleration (4,) [rad/s^2], from which the jerk counts; None where it has given way."""
-        return None if self.jerk_given_way else self.a1
+        """The last acceleration (4,) [rad/s^2], from which the jerk counts; None where it has yielded."""
+        return None if self.jerk_yielded else self.a1
 
     @property
     def mode(self) -> Mode:

@@ -34,44 +34,44 @@ class FrameMotion:
 
 @dataclass(frozen=True)
 class JerkBraking:
-    """The frames' ways to rest from the tick of the last command: None where a frame brakes without.
+    """The frames' profiles to rest from the tick of the last command: None where a frame brakes without.
 
-    `fastest`: of an E-stop. `given_way`: whether a frame goes beyond its jerk limit.
+    `fastest`: of an E-stop. `jerk_yielded`: whether a frame goes beyond its jerk limit.
     """
 
-    ways: tuple[Trajectory | None, ...]
+    profiles: tuple[Trajectory | None, ...]
     fastest: bool
-    given_way: bool
+    jerk_yielded: bool
 
     def positions(self, time: float, x: Array) -> bool:
-        """x (4,) <- the positions [rad] `time` [s] on, of the frames that have a way; whether all of them rest."""
+        """x (4,) <- the positions [rad] `time` [s] on, of the frames that have a profile; whether all of them rest."""
         rest = True
-        for i, way in enumerate(self.ways):
-            if way is not None:
-                rest = rest and time >= way.duration
-                x[i] = way.at_time(min(time, way.duration))[0][0]
+        for i, profile in enumerate(self.profiles):
+            if profile is not None:
+                rest = rest and time >= profile.duration
+                x[i] = profile.at_time(min(time, profile.duration))[0][0]
         return rest
 
 
 def jerk_braking(rig: Rig, dt: float, state: tuple[Array, Array, Array], share: float, *, fastest: bool) -> JerkBraking:
-    """The ways to rest from the last command's position, rate and acceleration, (4,) each, as differences give them.
+    """The profiles to rest from the last command's position, rate and acceleration, (4,) each, as differences give them.
 
     share: of the acceleration limit, where that is enough.
     """
-    ways: list[Trajectory | None] = []
-    given_way = False
+    profiles: list[Trajectory | None] = []
+    jerk_yielded = False
     for i in range(4):
         if not math.isfinite(rig.max_jerk[i]):
-            ways.append(None)
+            profiles.append(None)
             continue
         x, v, a = (float(each[i]) for each in state)
-        way, jerk_kept = _way(rig, i, FrameMotion(x, v + 0.5 * a * dt, a), share, fastest=fastest)
-        ways.append(way)
-        given_way = given_way or not jerk_kept
-    return JerkBraking(tuple(ways), fastest, given_way)
+        profile, jerk_kept = _to_rest(rig, i, FrameMotion(x, v + 0.5 * a * dt, a), share, fastest=fastest)
+        profiles.append(profile)
+        jerk_yielded = jerk_yielded or not jerk_kept
+    return JerkBraking(tuple(profiles), fastest, jerk_yielded)
 
 
-def _way(rig: Rig, frame: int, now: FrameMotion, share: float, *, fastest: bool) -> tuple[Trajectory | None, bool]:
+def _to_rest(rig: Rig, frame: int, now: FrameMotion, share: float, *, fastest: bool) -> tuple[Trajectory | None, bool]:
     """(the first profile that keeps what comes first, whether its jerk is inside the limit); None: brake at once."""
     most, jerk = float(rig.max_acceleration[frame]), float(rig.max_jerk[frame])
     low, high = float(rig.position_min[frame]), float(rig.position_max[frame])
@@ -83,14 +83,14 @@ def _way(rig: Rig, frame: int, now: FrameMotion, share: float, *, fastest: bool)
     tries = [(share, 1.0)] if share < 1.0 else []
     tries += [(1.0, 2.0**k) for k in range(round(math.log2(MOST)) + 1)]
     for part, times in tries:
-        way = _profile(now, part * most, _SHARE * times * jerk)
-        if way is None:
+        profile = _profile(now, part * most, _SHARE * times * jerk)
+        if profile is None:
             continue
-        bounds = way.position_extrema[0]
+        bounds = profile.position_extrema[0]
         peak = abs(now.v) + (0.5 * now.a * now.a / (_SHARE * times * jerk) if now.a * now.v > 0.0 else 0.0)
         slow = peak <= max(float(rig.max_rate[frame]), abs(now.v)) * (1.0 + 0.5 * TOLERANCE)
-        if slow and bounds.min >= low and bounds.max <= high and way.duration <= longest:
-            return way, times == 1.0
+        if slow and bounds.min >= low and bounds.max <= high and profile.duration <= longest:
+            return profile, times == 1.0
     return None, False
 
 
@@ -103,9 +103,9 @@ def _profile(now: FrameMotion, acceleration: float, jerk: float) -> Trajectory |
     # Without an acceleration limit the profile has none: it would need no more than this.
     most = math.sqrt(abs(now.v) * jerk) + abs(now.a) + 1.0
     plan.max_acceleration, plan.max_jerk = [min(_SHARE * acceleration, most)], [jerk]
-    way = Trajectory(1)
+    profile = Trajectory(1)
     try:
-        found = Ruckig(1).calculate(plan, way) in (Result.Working, Result.Finished)
+        found = Ruckig(1).calculate(plan, profile) in (Result.Working, Result.Finished)
     except (ValueError, RuntimeError):
         return None
-    return way if found and np.isfinite(way.duration) else None
+    return profile if found and np.isfinite(profile.duration) else None

@@ -10,7 +10,7 @@ from fullpose_server.gate.gate import Gate
 _MOST = 256  # descriptors: what is asked meanwhile is answered, and a second later a process has begun
 
 
-class StandIn:
+class Substitute:
     """Accepts as soon as it is told something by `link`."""
 
     def __init__(self, listener: socket.socket, proxies: Sequence[str]) -> None:
