@@ -15,7 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 _TYPES = re.compile(r"(application/(json|problem\+json|javascript)|text/(html|css|javascript)|image/svg\+xml)\b")
 _LEAST = 1400  # bytes: less fits into one packet
-_SHORT = 16_384  # bytes that take a fraction of a millisecond
+_AT_ONCE = 16_384  # bytes that take a fraction of a millisecond
 _LEVEL = 5
 _GZIP = 16 + zlib.MAX_WBITS
 _BODILESS = frozenset({204, 206, 304})
@@ -79,7 +79,7 @@ class _Compressed:
         await self._send({**message, "body": body})
 
     async def _packed(self, body: bytes, more: bool) -> bytes:
-        return self._pack(body, more) if len(body) < _SHORT else await asyncio.to_thread(self._pack, body, more)
+        return self._pack(body, more) if len(body) < _AT_ONCE else await asyncio.to_thread(self._pack, body, more)
 
     def _pack(self, body: bytes, more: bool) -> bytes:
         return self._packer.compress(body) + (b"" if more else self._packer.flush())

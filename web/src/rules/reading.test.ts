@@ -36,7 +36,7 @@ it("names the axes of the turns", () => {
 
 it("remembers by the columns of a file", () => {
   localStorage.clear();
-  remember(NAMES, { profile: "ours", bridge_gaps: true } as never);
+  remember(NAMES, { profile: "ours", bridge_gaps: true });
   expect(remembered(NAMES)).toEqual({ profile: "ours" });
   expect(remembered(["t"])).toBeNull();
   localStorage.setItem("fullpose.reading", "damaged");

@@ -54,7 +54,7 @@ class JerkBraking:
 
 
 def jerk_braking(rig: Rig, dt: float, state: tuple[Array, Array, Array], share: float, *, fastest: bool) -> JerkBraking:
-    """The profiles to rest from the last command's position, rate and acceleration, (4,) each, as differences give them.
+    """The profiles to rest from the last command: position, rate, acceleration, (4,) each, as differences give them.
 
     share: of the acceleration limit, where that is enough.
     """
