@@ -62,7 +62,12 @@ def write_record(path: Path, rows: int) -> None:
         record.add_samples(samples(first, min(CHUNK, rows - first), rows))
         if first % (60 * RATE_HZ) == 0:
             at = BEGUN_NS + first * (1_000_000_000 // RATE_HZ)
-            record.add_event({"kind": "alarm", "time_ns": at, "code": "following", "severity": "warning"})
+            wall_s = (WALL_NS + at - BEGUN_NS) / 1e9
+            told = {"code": "tracking", "severity": "warning", "message": "tracking error 0.02 deg", "count": 1}
+            number = first // (60 * RATE_HZ) + 1
+            record.add_event(
+                {"kind": "alarm", "time_ns": at, "time_s": wall_s, "number": number, "first": False, **told}
+            )
         record.cut()
     record.add_event({"kind": "run_end", "time_ns": BEGUN_NS + rows * 1_000_000, "head": rows, "how": "completed"})
     record.finish()
