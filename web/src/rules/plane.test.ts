@@ -10,10 +10,10 @@ const PLANE: Plane = {
   base_deg: [-90, 90],
   rows: 3,
   margin: text([1, 2, 3, 4, 5, 6, 10, -20, 30, -40, 50, 60]),
-  limits: text([6, 6, 6, 6, 6, 6, 6, 6, 6, 6 + 16 * 10, 0, 1]),
+  limits: text([5, 5, 5, 5, 5, 5, 5, 5, 5, 5 + 16 * 8, 0, 1]),
   needles: [],
   needles_left_out: 0,
-  path: { base_deg: [0, 10], side: [0, 1], margin: [4, -2], limit: [6, 15] },
+  path: { base_deg: [0, 10], side: [0, 1], margin: [4, -2], limit: [5, 12] },
   tightest: { time_s: 1, margin: -2, frame: "inner", limit: "acceleration", sentence: "Tightest at 1.000 s." },
 };
 const cells = new PlaneCells(PLANE);
@@ -23,7 +23,7 @@ it("a cell is that of the plan's side, or of the better one", () => {
   expect(cells.at(1, 2, "flown")).toEqual({ margin: 60, binding: 1, against: 0 });
   expect(cells.at(0, 0, "best").margin).toBe(10);
   expect(cells.at(0, 1, "best").margin).toBe(2);
-  expect(cells.at(1, 0, "flown")).toEqual({ margin: -40, binding: 6, against: 10 });
+  expect(cells.at(1, 0, "flown")).toEqual({ margin: -40, binding: 5, against: 8 });
 });
 
 it("a base angle has a row, also beyond the plane", () => {
@@ -31,10 +31,12 @@ it("a base angle has a row, also beyond the plane", () => {
 });
 
 it("a cell and the plan are told in words", () => {
-  expect([limitOf(1), limitOf(6), limitOf(15), limitOf(0)]).toEqual([
+  expect([limitOf(1), limitOf(5), limitOf(12), limitOf(13), limitOf(16), limitOf(0)]).toEqual([
     "the base frame's position limit",
     "the outer frame's rate limit",
     "the inner frame's acceleration limit",
+    "the base frame's jerk limit",
+    "the inner frame's jerk limit",
     "no limit",
   ]);
   expect(cellSentence(cells.at(0, 1, "flown"), 0.25, -12)).toBe(

@@ -53,9 +53,15 @@ export class PlaneCells {
   }
 }
 
-/** "the outer frame's rate limit", of a code. */
+/** Codes go frame by frame over the limits that rigs have had from the first; those of jerk came later, after them. */
+const A_FRAME = LIMITS.indexOf("jerk");
+const FIRST_JERK = 1 + FRAMES.length * A_FRAME;
+
+/** "the outer frame's rate limit", of a code (`fullpose.bounds.limited_code`). */
 export function limitOf(code: number): string {
-  const [frame, limit] = [FRAMES[Math.floor((code - 1) / LIMITS.length)], LIMITS[(code - 1) % LIMITS.length]];
+  const jerk = code >= FIRST_JERK;
+  const frame = FRAMES[jerk ? code - FIRST_JERK : Math.floor((code - 1) / A_FRAME)];
+  const limit = jerk ? "jerk" : LIMITS[(code - 1) % A_FRAME];
   return frame && limit ? `the ${frame} frame's ${limit} limit` : "no limit";
 }
 

@@ -14,10 +14,10 @@ const PLANE: Plane = {
   base_deg: [-90, 90],
   rows: 3,
   margin: text([1, 2, 3, 4, 5, -6, 10, 20, 30, 40, 50, 60]),
-  limits: text(Array.from({ length: 12 }, () => 6)),
+  limits: text(Array.from({ length: 12 }, () => 5)),
   needles: [{ time_s: 0.5, base_deg: 20, half_width_deg: 3 }],
   needles_left_out: 0,
-  path: { base_deg: [0, 0], side: [0, 0], margin: [1, 4], limit: [6, 6] },
+  path: { base_deg: [0, 0], side: [0, 0], margin: [1, 4], limit: [5, 5] },
   tightest: { time_s: 1, margin: 4, frame: "outer", limit: "rate", sentence: SENTENCE },
 };
 const plan = { id: "p1", rig: "bench", trajectory_name: "loop" } as Plan;
