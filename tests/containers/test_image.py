@@ -10,7 +10,6 @@ from tests.support.waiting import until
 LARGEST_MB = 600
 
 
-@pytest.mark.xfail(reason="700 MB: see docs/decisions/0037-containers.md", strict=True)
 def test_it_is_smaller_than_600_mb(engine: Engine) -> None:
     size = int(podman("image", "inspect", "--format", "{{.Size}}", engine.image)) / 1e6
     print(f"image: {size:.0f} MB")
