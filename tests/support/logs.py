@@ -142,8 +142,8 @@ def rosbag2(folder: Path, topics: dict[str, str], *, mcap: bool) -> Path:
     return found
 
 
-def json_mcap(path: Path) -> Path:
-    """JSON messages on two topics, one of them an attitude in ours."""
+def json_mcap(path: Path, *, attitudes: bool = True) -> Path:
+    """JSON messages on two topics, one of them an attitude in ours; or on the other alone."""
     with path.open("wb") as stream:
         writer = McapWriter(stream)
         writer.start()
@@ -153,7 +153,8 @@ def json_mcap(path: Path) -> Path:
         for k, at in enumerate(TIME_US):
             heading, pitch, bank = YPR[k]
             said = {"time_s": at * 1e-6, "heading_deg": heading, "pitch_deg": pitch, "bank_deg": bank, "note": "x"}
-            writer.add_message(attitude, int(at) * 1000, json.dumps(said).encode(), int(at) * 1000)
+            if attitudes:
+                writer.add_message(attitude, int(at) * 1000, json.dumps(said).encode(), int(at) * 1000)
             writer.add_message(other, int(at) * 1000, b'{"volts": 11.1}', int(at) * 1000)
         writer.finish()
     return path

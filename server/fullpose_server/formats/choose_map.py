@@ -148,14 +148,15 @@ def _nothing_fits(table: Table, convention: Convention | None) -> FileError:
     for each in profiles.values():
         if each.guessed and each.bind(table) is not None:
             return _other_axes(table, each, convention)
+    among = listing(table.names) if table.format == "csv" else f"{listing(table.names)} of {table.format} {table.name}"
     if find(table, ("time_s",)) is None:
         says = ("profile", "says which columns are what")
-        return table.error(f"a column time_s among {listing(table.names)}", "time_s", otherwise=says)
+        return table.error(f"a column time_s among {among}".rstrip(), "time_s", otherwise=says)
     own = profiles["fullpose-ned" if convention is Convention.NED else "fullpose"]
     q = profiles["fullpose-quaternion"]
     nearer = q if len(q.missing(table)) < 4 else own
-    expected = f"{', '.join(_attitude(own))} or {', '.join(_attitude(q))} among {listing(table.names)}"
-    return table.error(expected, nearer.missing(table)[0])
+    expected = f"{', '.join(_attitude(own))} or {', '.join(_attitude(q))} among {among}"
+    return table.error(expected.rstrip(), nearer.missing(table)[0])
 
 
 def listing(names: tuple[str, ...]) -> str:

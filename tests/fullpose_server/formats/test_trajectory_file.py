@@ -131,8 +131,12 @@ def test_a_row_of_another_length(tmp_path: Path) -> None:
     assert "4 columns" in str(error)
 
 
-def test_a_row_cut_off_at_the_end_of_the_file(tmp_path: Path) -> None:
-    assert refused(tmp_path, HEADER + "0,1,2,3\n1,1,2,").line == 3
+def test_a_row_cut_off_at_the_end_of_the_file_is_left_out_and_said(tmp_path: Path) -> None:
+    path = tmp_path / "flight.csv"
+    path.write_text(HEADER + "0,1,2,3\n1,1,2,3\n2,1,2,")
+    flight = read_trajectory(path)
+    assert flight.time.tolist() == [0.0, 1.0]
+    assert any("4" in caution.message for caution in flight.warnings)
 
 
 def test_time_that_goes_backward(tmp_path: Path) -> None:

@@ -75,6 +75,11 @@ def test_json_messages_are_columns_by_name(tmp_path: Path) -> None:
     assert attitude_error_deg(flight, logs.NED, "ned") < 1e-9
 
 
+def test_one_without_an_attitude_is_named_for_what_it_is(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="a column time_s among log_time, volts of mcap /battery"):
+        read_trajectory(logs.json_mcap(tmp_path / "log", attitudes=False))
+
+
 def run(path: Path, rig: str) -> np.ndarray:
     record = RunRecord(path, {"run_id": "r", "rig": rig, "who": "ann", "plan": {}}, 10**18, 10**9)
     rows = np.zeros(300, SAMPLE)
