@@ -94,10 +94,12 @@ class Trials:
 
     def final(self, time: Array, attitude: Array, rig: Rig, options: PlanOptions | None = None) -> Plan:
         """The plan that is returned, from every sample; options: in place of the search's own."""
+        self.done = max(self.done, self.total - 1)
         made = plan(
             time, attitude, rig, self.start, options=options or self.options,
             progress=lambda _done, _total: self._tell_last(),
         )  # fmt: skip
+        self.done = self.total
         if self.progress is not None:
             self.progress(self.total, self.total)
         return made

@@ -152,7 +152,7 @@ def test_names_that_are_none():
     with pytest.raises(InputError, match="frame"):
         relax(TIME, YAW, base_alone(1.0), frame="third")
     with pytest.raises(InputError, match="limit"):
-        relax(TIME, YAW, base_alone(1.0), limit="jerk")
+        relax(TIME, YAW, base_alone(1.0), limit="snap")
     with pytest.raises(InputError, match="outer, middle, inner, the frames of vertical-3"):
         relax(TIME, YAW, builtin_rigs()["vertical-3"], frame="base")
 
