@@ -8,7 +8,7 @@ from fullpose.vocabulary import Consequence
 
 if TYPE_CHECKING:
     from fullpose.plan.impossible import Beyond
-    from fullpose.plan.reason import Needed, Reached, Reason
+    from fullpose.plan.reason import FrameAtLimit, Reason
     from fullpose.plan.verdict import Verdict
     from fullpose.solution import Blocking
 
@@ -29,7 +29,7 @@ def reason_report(verdict: "Verdict") -> dict[str, Any]:
     }
 
 
-def _figures(told: "Reached | Needed") -> dict[str, Any]:
+def _figures(told: "FrameAtLimit") -> dict[str, Any]:
     return {
         "time_s": told.time,
         "frame": told.frame,
@@ -74,13 +74,13 @@ def _past(closed: "Blocking | None") -> str:
     return f" past {closed.time:.3f} s, where the {closed.limit} limit of the {closed.frame} frame closes the last one"
 
 
-def _would(then: "Needed") -> str:
+def _would(then: "FrameAtLimit") -> str:
     if then.limit == Limit.POSITION:
         return f"would have to be at {_number(then.value)} deg"
     return f"would need {_number(abs(then.value))} {UNITS[then.limit]}"
 
 
-def _bound(then: "Needed") -> str:
+def _bound(then: "FrameAtLimit") -> str:
     if then.limit == Limit.POSITION:
         return f"its stop is at {_number(then.bound)} deg"
     return f"its limit is {_number(abs(then.bound))} {UNITS[then.limit]}"

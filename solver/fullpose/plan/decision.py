@@ -15,7 +15,8 @@ from fullpose.plan.least_tolerance import BRIEF, LeastTolerance, least_tolerance
 from fullpose.plan.node_paths import cheapest
 from fullpose.plan.recorded_noise import recorded_noise
 from fullpose.plan.refinement import Task, how_far, refined
-from fullpose.plan.strategies import State, first_look, search
+from fullpose.plan.search_state import State
+from fullpose.plan.strategies import first_look, search
 from fullpose.plan.three_axis import three_axis_path
 from fullpose.rig import FRAMES, LIMITS, Limit
 from fullpose.solution import Blocking
@@ -50,6 +51,7 @@ class Flown:
     blocking: Blocking | None
     grid: float = math.nan  # [rad] of the search
     node_paths: int = 0  # that were refined
+    tried: tuple[str, ...] = ()  # the attempts, in turn
 
     def held(self, n: int) -> "Flown":
         """Its first sample, held over n."""
@@ -110,7 +112,7 @@ def _behind_noise(task: Task) -> LeastTolerance | None:
 def _inside(state: State, angles: Array, path: Path) -> Flown:
     """Angles that are exact and inside every limit."""
     none = np.zeros(len(angles), np.int16)
-    return Flown(angles, path.iterations, none, Decision.CHECKED, None, state.query.grid, state.node_paths)
+    return Flown(angles, path.iterations, none, Decision.CHECKED, None, state.query.grid, state.node_paths, state.tried)
 
 
 def _outside(task: Task, state: State, path: Path) -> Flown:
@@ -119,7 +121,7 @@ def _outside(task: Task, state: State, path: Path) -> Flown:
     blocking, decided_by = _closed(problem, path)
     failed = Flown(
         path.angles, path.iterations, np.zeros(len(problem), np.int16), decided_by, blocking, state.query.grid,
-        state.node_paths,
+        state.node_paths, state.tried,
     )  # fmt: skip
     if not problem.options.best_effort:
         return failed

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from fullpose._typing import Array
 from fullpose.charts import TURN, vertical_views
 from fullpose.rig import Rig
-from fullpose.trajectory.base_curve import frames_of_base
+from fullpose.trajectory.frame_chart import BASE, INNER, OUTER, frames_of
 
-BASE, OUTER, MIDDLE, INNER = range(4)
 HALF = math.pi
 NO_POSE = math.radians(0.05)  # short of the nearest angle that has a pose by more, there is none
 ROUNDING = 1e-12
@@ -58,7 +57,10 @@ def _on_branch(rig: Rig, attitude: Array, based: _Based, first: Array) -> tuple[
     base = np.unwrap(base)
     base += TURN * np.rint((first[0] - base[0]) / TURN)
     found = np.empty((len(base), 4))
-    frames_of_base(rig.geometry.horizontal, attitude, base, np.where(upright, 1.0, -1.0), first, found)
+    frames_of(
+        rig.geometry.horizontal, np.arange(float(len(base))), attitude, BASE, base, np.where(upright, 1.0, -1.0), first,
+        found,
+    )  # fmt: skip
     return found, exists
 
 
@@ -67,21 +69,22 @@ def _base_of_base(_V: Array, given: Array, branch: float) -> _Based:
 
 
 def _base_of_outer(V: Array, given: Array, branch: float) -> _Based:
-    sine = np.sin(given)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        cosine = V[:, 0, 1] / sine  # of d3
-    exists = (np.abs(sine) > UNDETERMINED) & (np.abs(cosine) <= 1.0 + ROUNDING)
-    cosine = np.where(exists, np.clip(cosine, -1.0, 1.0), 1.0)
+    cosine, exists = _other_factor(V, np.sin(given), 1.0)  # of d3
     return _base(V, cosine * np.cos(given), -branch * np.sqrt(1.0 - cosine**2)), cosine >= 0.0, exists
 
 
 def _base_of_middle(V: Array, given: Array, branch: float) -> _Based:
     cosine = np.cos(given)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        sine = V[:, 0, 1] / cosine  # of d2
-    exists = (np.abs(cosine) > UNDETERMINED) & (np.abs(sine) <= 1.0 + ROUNDING)
-    sine = np.where(exists, np.clip(sine, -1.0, 1.0), 0.0)
+    sine, exists = _other_factor(V, cosine, 0.0)  # of d2
     return _base(V, branch * cosine * np.sqrt(1.0 - sine**2), -np.sin(given)), cosine >= 0.0, exists
+
+
+def _other_factor(V: Array, factor: Array, where_none: float) -> tuple[Array, NDArray[np.bool_]]:
+    """The other factor of sin d2 cos d3 = V01 (n,), and whether there is one (n,)."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        other = V[:, 0, 1] / factor
+    exists = (np.abs(factor) > UNDETERMINED) & (np.abs(other) <= 1.0 + ROUNDING)
+    return np.where(exists, np.clip(other, -1.0, 1.0), where_none), exists
 
 
 def _base(V: Array, m00: Array, m02: Array) -> Array:

@@ -117,7 +117,7 @@ def _finished(problem: Problem, flown: Flown, stopwatch: Clock) -> Plan:
     n = len(time)
     angles = _polished(problem, flown)
     found = check(time, attitude, angles, rig)
-    verdict = verdict_on(found, rig, flown.blocking, flown.decided_by, flown.grid)
+    verdict = verdict_on(found, rig, flown.blocking, flown.decided_by, flown.grid, flown.tried)
     exact = verdict.feasible and flown.decided_by is not Decision.TOLERANCE
     if exact or problem.options.best_effort:
         verdict = with_least_tolerance(verdict, found, exact)

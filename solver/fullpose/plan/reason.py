@@ -33,21 +33,11 @@ TOGETHER = 0.1  # [s] after the first limit that is exceeded: of those in it a s
 
 
 @dataclass(frozen=True)
-class Reached:
-    """A frame reaches a limit [rad, rad/s, rad/s^2, rad/s^3]: the value with its sign, and the bound that it is at."""
+class FrameAtLimit:
+    """A frame and one of its limits [rad, rad/s, rad/s^2, rad/s^3]: the value with its sign, and the bound it is at.
 
-    time: float
-    frame: Frame
-    limit: Limit
-    value: float
-    bound: float
-
-
-@dataclass(frozen=True)
-class Needed:
-    """What the attitude would need of a frame then [rad, rad/s, rad/s^2, rad/s^3], and the bound that this exceeds.
-
-    Of a frame that would itself have to be elsewhere, `bound` is the angle that it has then.
+    Of what the attitude would need the value is that, which exceeds the bound; of a frame that would itself have to be
+    elsewhere, `bound` is the angle that it has then.
     """
 
     time: float
@@ -61,8 +51,8 @@ class Needed:
 class Reason:
     """What happens first and what then; `then` is None where no single limit tells it."""
 
-    first: Reached
-    then: Needed | None
+    first: FrameAtLimit
+    then: FrameAtLimit | None
     consequence: Consequence
 
 
@@ -109,7 +99,7 @@ def _stretches(
 def _told(stretch: _Stretch) -> Reason | None:
     """The frame whose limit is the nearest before what cannot be had; positions before rates before accelerations."""
     best: tuple[tuple[int, int, float], Reason] | None = None
-    earliest: Reached | None = None
+    earliest: FrameAtLimit | None = None
     for frame in _free(stretch.rig):
         for limit in range(len(LIMITS)):
             for reached, left in _on_limit(stretch, frame, limit):
@@ -128,7 +118,7 @@ def _told(stretch: _Stretch) -> Reason | None:
     return None if earliest is None else Reason(earliest, None, Consequence.NOT_NAMED)
 
 
-def _late(reached: Reached, needed: Needed) -> bool:
+def _late(reached: FrameAtLimit, needed: FrameAtLimit) -> bool:
     """Whether a frame that is too slow would have to be elsewhere: it tells less than what another would need."""
     return needed.frame == reached.frame and needed.limit == Limit.POSITION != reached.limit
 
@@ -139,7 +129,7 @@ def _free(rig: Rig) -> list[int]:
     return [i for i in rig.geometry.frames if room[i] > LOCKED] or list(rig.geometry.frames)
 
 
-def _on_limit(stretch: _Stretch, frame: int, limit: int) -> Iterator[tuple[Reached, float]]:
+def _on_limit(stretch: _Stretch, frame: int, limit: int) -> Iterator[tuple[FrameAtLimit, float]]:
     """The times that a frame is on a limit: when it reaches it, and when it leaves it [s]."""
     rig, time, x = stretch.rig, stretch.time, stretch.angles[:, frame]
     if limit == 0:
@@ -160,7 +150,7 @@ def _on_limit(stretch: _Stretch, frame: int, limit: int) -> Iterator[tuple[Reach
         on = np.isfinite(most) & (np.abs(value) >= (1.0 - AT_LIMIT) * most)
     for begin, end in _runs(when, np.flatnonzero(on)):
         yield (
-            Reached(float(when[begin]), FRAMES[frame], LIMITS[limit], float(value[begin]), float(bound[begin])),
+            FrameAtLimit(float(when[begin]), FRAMES[frame], LIMITS[limit], float(value[begin]), float(bound[begin])),
             float(when[end]),
         )
 
@@ -173,7 +163,7 @@ def _runs(time: Array, at: Integers) -> list[tuple[int, int]]:
     return list(zip(at[np.r_[0, breaks + 1]].tolist(), at[np.r_[breaks, -1]].tolist(), strict=True))
 
 
-def _needed(stretch: _Stretch, frame: int, limit: int) -> Needed | None:
+def _needed(stretch: _Stretch, frame: int, limit: int) -> FrameAtLimit | None:
     """The first limit that the exact path with this frame's angles exceeds; where that is only that a frame without
     room to move has to stay, what the frame itself would need for it."""
     rig = stretch.rig
@@ -186,7 +176,7 @@ def _needed(stretch: _Stretch, frame: int, limit: int) -> Needed | None:
     return itself if itself is not None and itself.frame == FRAMES[frame] else needed
 
 
-def _beside(stretch: _Stretch, frame: int) -> Needed | None:
+def _beside(stretch: _Stretch, frame: int) -> FrameAtLimit | None:
     """What the exact path with this frame's angles needs first: of others, or that the frame were elsewhere."""
     held = held_frame(stretch.rig, stretch.attitude, stretch.angles, frame)
     off = np.abs(held.nearest - stretch.angles[:, frame])
@@ -201,10 +191,10 @@ def _beside(stretch: _Stretch, frame: int) -> Needed | None:
     run = without[: 1 + int(np.argmax(np.diff(np.r_[without, len(off) + 1]) > 1))]
     k = int(run[np.argmax(off[run])])
     there, here = float(held.nearest[k]), float(stretch.angles[k, frame])
-    return Needed(float(stretch.time[k]), FRAMES[frame], Limit.POSITION, there, here)
+    return FrameAtLimit(float(stretch.time[k]), FRAMES[frame], Limit.POSITION, there, here)
 
 
-def _first(stretch: _Stretch, path: Array) -> Needed | None:
+def _first(stretch: _Stretch, path: Array) -> FrameAtLimit | None:
     """The first of the limits that path (m, 4) [rad], from the stretch's beginning on, exceeds, at its worst."""
     rig = stretch.rig
     found = verify(stretch.time[: len(path)], path, rig).violations
@@ -220,4 +210,4 @@ def _first(stretch: _Stretch, path: Array) -> Needed | None:
         bound = math.copysign(
             (rig.max_rate, rig.max_acceleration, rig.max_jerk)[LIMITS.index(first.limit) - 1][i], first.value
         )
-    return Needed(first.time, first.frame, first.limit, first.value, float(bound))
+    return FrameAtLimit(first.time, first.frame, first.limit, first.value, float(bound))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from fullpose._typing import Array, Progress
 from fullpose.bounds import MET, POSITION
 from fullpose.plan.fallback import EXACT_ERROR, Fallback
 from fullpose.trajectory.constraints import largest_violation, rig_limits
+from fullpose.trajectory.needles import Needles, needles
 from fullpose.trajectory.problem import Problem
 from fullpose.trajectory.shortest_path import Avoid
 from fullpose.trajectory.sqp import RATE_MET, missed_rate
@@ -29,6 +31,12 @@ class Task:
     problem: Problem
     fallback: Fallback
     progress: Progress | None = None
+
+    @cached_property
+    def needles(self) -> Needles:
+        """The needles of the flight, worked out when they are asked for, and kept."""
+        problem = self.problem
+        return needles(problem.time, problem.attitude, problem.rig.geometry.horizontal)
 
     def told(self, begin: float, share: float) -> Progress | None:
         """Progress of a part of the work, from the share `begin` on, in samples."""

@@ -4,7 +4,6 @@ An attempt is given the task, which does not change, and the state that those be
 state. What each of them adds was measured (docs/decisions/0005-planner.md).
 """
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
@@ -14,29 +13,34 @@ from fullpose._typing import Array
 from fullpose.bounds import MET
 from fullpose.plan.beam_path import BREADTHS
 from fullpose.plan.fallback import Fallback
-from fullpose.plan.level_path import is_level, level_path
+from fullpose.plan.level_path import level_path
 from fullpose.plan.node_paths import Query, cheapest, searched
-from fullpose.plan.plane_path import PlaneBreadth, plane_path, slow_frames
+from fullpose.plan.plane_path import PlaneBreadth, plane_path
 from fullpose.plan.refinement import Task, failed_places, flown_beside, how_far, refined
+from fullpose.plan.search_state import (
+    State,
+    always,
+    best_effort,
+    coarse,
+    fine,
+    free_and_brief,
+    level,
+    near,
+    nimble,
+    nimble_and_brief,
+    quick_base,
+    slow,
+    slow_base,
+    slow_middle,
+    slow_outer,
+)
+from fullpose.trajectory.frame_chart import INNER, MIDDLE, OUTER
 from fullpose.trajectory.nodes import OVERLAP
+from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.shortest_path import Avoid, NodePath
-from fullpose.trajectory.sqp import locked
 from fullpose.trajectory.windows import Path, smooth_curve, stage_samples
 
-WIDE_SECONDS = 600.0  # of a flight that is searched widely: up to a tenth of its length each time
-
-
-@dataclass(frozen=True)
-class State:
-    """What the attempts so far have come to."""
-
-    query: Query  # as the next node path is looked for, but for what an attempt changes of it for itself
-    cheapest: NodePath  # found, or how far the widest search came
-    avoid: tuple[Avoid, ...] = ()  # around the places that failed
-    node_paths: int = 0  # that were refined
-    best: Path | None = None  # of those, the least outside the limits,
-    violation: float = math.inf  # by this share
-    flown: Path | None = None  # inside them: the end of the search
+BUDGET = 24.0  # times the work of the first attempt, or so, that all may take: see `Attempt.work`
 
 
 Step = Callable[[Task, State], State]
@@ -98,7 +102,7 @@ def in_the_plane(breadth: PlaneBreadth) -> Step:
     """Refine the path that the search in the plane of time and base angle finds."""
 
     def step(task: Task, state: State) -> State:
-        angles = plane_path(task.problem, breadth, task.told(0.0, 0.5))
+        angles = plane_path(task.problem, task.needles, breadth, task.told(0.0, 0.5))
         return state if angles is None else judged(task, state, refined(task, angles))
 
     return step
@@ -171,79 +175,56 @@ def _looked_for(
     return node_path, replace(state, query=replace(state.query, turns=answered.turns))
 
 
-# When it applies
-
-
-def always(_task: Task, _state: State) -> bool:
-    """Whatever came before."""
-    return True
-
-
-def free(task: Task, state: State) -> bool:
-    """Where there is something to choose."""
-    return len(state.query.samples) > 1 and not locked(task.problem.rig)
-
-
-def free_and_brief(task: Task, state: State) -> bool:
-    """Where a wide search does not take too long, too."""
-    time = task.problem.time
-    return free(task, state) and bool(time[-1] - time[0] <= WIDE_SECONDS)
-
-
-def slow(task: Task, state: State) -> bool:
-    """Where a frame other than the base is slow, too."""
-    return free_and_brief(task, state) and bool(slow_frames(task.problem.rig))
-
-
-def level(task: Task, state: State) -> bool:
-    """Where the flight is level throughout."""
-    return free(task, state) and is_level(task.problem)
-
-
-def coarse(task: Task, state: State) -> bool:
-    """Where the grid is not the fine one yet."""
-    return state.query.grid > task.problem.options.fine_grid
-
-
-def fine(task: Task, state: State) -> bool:
-    """Where it is."""
-    return not coarse(task, state)
-
-
-def best_effort(task: Task, _state: State) -> bool:
-    """Where time is spent on flights that seem infeasible."""
-    return task.problem.options.best_effort
+# The table
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """One row: where it counts among `PlanOptions.alternatives`, what it is called, when it applies, what it does."""
+    """One row: where it counts among `PlanOptions.alternatives`, what it is called, when it applies, what it does, and
+    how much work it is, as a number of node paths: a measured figure, so that where a search ends is no matter of the
+    machine."""
 
     number: int
     name: str
     applies: Callable[[Task, State], bool]
     step: Step
+    work: float = 1.0
 
 
+# In the order of what they promise for their work.
 ATTEMPTS = (
     Attempt(0, "cheapest node path", always, along(kept)),
-    Attempt(1, "straight through the singularity", always, along(straight)),
-    Attempt(2, "beside the step method", always, beside(lambda fallback: (fallback.exact,))),
-    Attempt(2, "sheets of level flight", level, on_sheets),
-    Attempt(2, "plane of time and base angle", free_and_brief, in_the_plane(PlaneBreadth(1000, 1.0, 1.0))),
-    Attempt(2, "beam search", free, along(searching(0))),
-    Attempt(2, "plane, slow frames lead", slow, in_the_plane(PlaneBreadth(4000, 2.0, 2.0, slow_lead=True))),
-    Attempt(2, "plane, slow frames lead, finer", slow, in_the_plane(PlaneBreadth(4000, 1.0, 1.0, slow_lead=True))),
-    Attempt(2, "plane, finer", free_and_brief, in_the_plane(PlaneBreadth(4000, 0.6, 0.5))),
-    Attempt(3, "wider beam search", free_and_brief, along(searching(1))),
-    Attempt(4, "wider beam search, accelerations dearer", free_and_brief, along(searching(2))),
-    Attempt(5, "away from the places that failed", always, along(away)),
-    Attempt(6, "finer grid and stages", coarse, along(finer)),
+    Attempt(1, "straight through the singularity", nimble, along(straight)),
+    Attempt(2, "beside the step method", always, beside(lambda fallback: (fallback.exact,)), 0.1),
+    Attempt(2, "sheets of level flight", level, on_sheets, 2.0),
+    Attempt(2, "plane of time and base angle", slow_base, in_the_plane(PlaneBreadth(1000, 1.0, 1.0)), 3.0),
+    Attempt(
+        2, "plane of time and outer angle", slow_outer, in_the_plane(PlaneBreadth(1000, 1.0, 1.0, frame=OUTER)), 3.0
+    ),
+    Attempt(
+        2, "plane of time and middle angle", slow_middle, in_the_plane(PlaneBreadth(1000, 1.0, 1.0, frame=MIDDLE)), 3.0
+    ),
+    Attempt(2, "plane of time and base angle", quick_base, in_the_plane(PlaneBreadth(1000, 1.0, 1.0)), 3.0),
+    Attempt(2, "beam search", nimble, along(searching(0)), 2.0),
+    Attempt(
+        2,
+        "plane of time and inner angle",
+        nimble_and_brief,
+        in_the_plane(PlaneBreadth(1000, 1.0, 1.0, frame=INNER)),
+        3.0,
+    ),
+    Attempt(2, "plane, slow frames lead", slow, in_the_plane(PlaneBreadth(4000, 2.0, 2.0, slow_lead=True)), 7.0),
+    Attempt(2, "plane, slow frames lead, finer", slow, in_the_plane(PlaneBreadth(4000, 1.0, 1.0, slow_lead=True)), 8.0),
+    Attempt(2, "plane, finer", free_and_brief, in_the_plane(PlaneBreadth(2000, 0.6, 0.5)), 8.0),
+    Attempt(3, "wider beam search", nimble_and_brief, along(searching(1)), 8.0),
+    Attempt(4, "wider beam search, accelerations dearer", nimble_and_brief, along(searching(2)), 8.0),
+    Attempt(5, "away from the places that failed", near, along(away)),
+    Attempt(6, "finer grid and stages", coarse, along(finer), 4.0),
     Attempt(6, "farther away", fine, along(away)),
-    Attempt(7, "singularity dearer", always, along(dearer)),
+    Attempt(7, "singularity dearer", near, along(dearer)),
 )
-FARTHER = Attempt(8, "ever farther away", always, along(away))  # and all after it
-LAST = Attempt(0, "beside previews that know much of the flight", best_effort, beside(lambda f: f.foreseen))
+FARTHER = Attempt(8, "ever farther away", near, along(away))  # and all after it
+LAST = Attempt(0, "beside previews that know much of the flight", best_effort, beside(lambda f: f.foreseen), 0.0)
 
 
 def attempts(alternatives: int) -> Iterator[Attempt]:
@@ -255,10 +236,15 @@ def attempts(alternatives: int) -> Iterator[Attempt]:
 
 
 def search(task: Task, state: State) -> State:
-    """The state after the first attempt that finds a path inside every limit, or after the last."""
-    for attempt in attempts(task.problem.options.alternatives):
-        if attempt.applies(task, state):
-            state = attempt.step(task, state)
+    """The state after the first attempt that finds a path inside every limit, or after the last that the budget pays
+    for: what is too much work for the rest of it is left out."""
+    alternatives = task.problem.options.alternatives
+    left = BUDGET * max(1.0, alternatives / PlanOptions().alternatives)
+    for attempt in attempts(alternatives):
+        if attempt.work > left or not attempt.applies(task, state):
+            continue
+        state = replace(attempt.step(task, state), tried=(*state.tried, attempt.name))
+        left -= attempt.work
         if state.flown is not None:
             break
     return state

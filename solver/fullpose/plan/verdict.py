@@ -20,11 +20,7 @@ SPARSE = math.radians(0.01)  # [rad] of attitude half-way between samples, above
 OVERSHOOT = 1e-3  # share of a rate or acceleration limit that a cubic goes over it where the samples are on it
 CLEAR = math.radians(1e-3)  # [rad] likewise, of a position limit
 
-
-FEASIBLE = {
-    Decision.CHECKED: "Feasible",
-    Decision.TOLERANCE: "Feasible within the tolerance",
-}
+FEASIBLE = {Decision.CHECKED: "Feasible", Decision.TOLERANCE: "Feasible within the tolerance"}
 # What a verdict rests on: how sure it is, and in words; {closed} is the time [s] that the search did not get past.
 CERTAINTY = {
     Decision.CHECKED: Certainty.CHECKED, Decision.TOLERANCE: Certainty.CHECKED,
@@ -83,6 +79,7 @@ class Verdict:
     closed: Blocking | None = None
     reason: Reason | None = None
     beyond: Beyond | None = None  # where that decided
+    tried: tuple[str, ...] = ()  # the attempts at an exact path, in turn
 
     @property
     def certainty(self) -> Certainty:
@@ -92,7 +89,7 @@ class Verdict:
     @property
     def how_sure(self) -> str:
         """What that rests on, in words."""
-        words = HOW_SURE[self.decided_by].format(closed=math.nan if self.closed is None else self.closed.time)
+        words = _rests(self.decided_by, self.closed, self.tried)
         return words[0].upper() + words[1:]
 
 
@@ -200,20 +197,28 @@ def check(time: Array, attitude: Array, angles: Array, rig: Rig) -> Check:
     return Check(error, matrix_error, tuple(violations), between_samples(time, attitude, angles, rig))
 
 
-def verdict_on(found: Check, rig: Rig, blocking: Blocking | None, decided_by: Decision, grid: float) -> Verdict:
+def _rests(decided_by: Decision, closed: Blocking | None, tried: tuple[str, ...]) -> str:
+    words = HOW_SURE[decided_by].format(closed=math.nan if closed is None else closed.time)
+    evidence = tried and CERTAINTY[decided_by] is Certainty.EVIDENCE
+    return f"{words} Tried: {', '.join(tried)}." if evidence else words
+
+
+def verdict_on(
+    found: Check, rig: Rig, blocking: Blocking | None, decided_by: Decision, grid: float, tried: tuple[str, ...] = ()
+) -> Verdict:
     """The verdict on a flight that was checked: what the planner found to close its way, or else what the check did."""
     if blocking is None and found.violations:
         first = found.violations[0]
         blocking = Blocking(first.time, first.frame, first.limit)
         decided_by = Decision.ACCELERATION if rig.geometry.redundant else Decision.THREE_AXIS
     between = found.between
-    rests = HOW_SURE[decided_by].format(closed=math.nan if blocking is None else blocking.time)
-    statement = f"{FEASIBLE.get(decided_by, 'Infeasible')}: {rests}"
+    statement = f"{FEASIBLE.get(decided_by, 'Infeasible')}: {_rests(decided_by, blocking, tried)}"
     if blocking is None:
         statement = f"{statement} {between.sentence()}"
     return Verdict(
-        blocking is None, blocking, decided_by, grid, statement, between.matrix, between.angle, closed=blocking
-    )
+        blocking is None, blocking, decided_by, grid, statement, between.matrix, between.angle, closed=blocking,
+        tried=tried,
+    )  # fmt: skip
 
 
 def with_reason(verdict: Verdict, reason: Reason | None) -> Verdict:

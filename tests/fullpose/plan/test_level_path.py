@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fullpose.plan import PlanOptions, plan
 from fullpose.plan.level_path import corners, is_level, level_path
 from fullpose.rig import FrameLimits, Geometry, Rig
 from fullpose.trajectory.problem import Problem
 from fullpose.verify import payload_attitudes, verify
+from tests.support.exactly import assert_flown_exactly
 
 DEG = np.pi / 180.0
 T = np.arange(2001) / 500.0
@@ -38,14 +38,7 @@ def changing(middle: float = 90.0) -> np.ndarray:
 @pytest.mark.parametrize("geometry", GEOMETRIES)
 @pytest.mark.parametrize("middle", [90.0, -90.0])
 def test_a_flight_that_must_change_sheets_is_flown(geometry: Geometry, middle: float) -> None:
-    rig, x = rig_of(geometry), changing(middle)
-    assert not verify(T, x, rig).violations
-    C = payload_attitudes(rig, x)
-    made = plan(T, C, rig, options=PlanOptions(best_effort=False))
-    assert made.verdict.feasible
-    found = verify(T, made.solution.angles, rig, C)
-    assert not found.violations
-    assert found.max_error < 1e-9 * DEG
+    assert_flown_exactly(T, changing(middle), rig_of(geometry))
 
 
 @pytest.mark.parametrize("geometry", GEOMETRIES)

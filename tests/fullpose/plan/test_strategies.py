@@ -11,7 +11,8 @@ from fullpose.plan import PlanOptions, strategies
 from fullpose.plan.fallback import Fallback
 from fullpose.plan.node_paths import NONE, Query
 from fullpose.plan.refinement import Task, how_far
-from fullpose.plan.strategies import FARTHER, LAST, State, attempts, first_look, search
+from fullpose.plan.search_state import WIDE_SECONDS, State
+from fullpose.plan.strategies import FARTHER, LAST, attempts, first_look, search
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
 from fullpose.trajectory.constraints import LimitViolation
@@ -49,8 +50,22 @@ def test_the_step_method_is_asked_after_two_and_before_the_wide_searches() -> No
     names = [row.name for row in attempts(OPTIONS.alternatives)]
     assert names.index("beside the step method") == 2
     assert names.index("sheets of level flight") == 3
-    assert names.index("plane of time and base angle") == 4
-    assert names.index("beam search") == 5
+    assert names.index("plane of time and base angle") < names.index("beam search") < names.index("plane, finer")
+
+
+def test_the_budget_ends_a_search_and_what_was_tried_is_told(
+    asked: list[Query], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = task()
+    monkeypatch.setattr(strategies, "BUDGET", 2.0)
+    names = [row.name for row in attempts(OPTIONS.alternatives)]
+    end = search(given, replace(begun(given), cheapest=NONE))
+    assert end.tried[:2] == ("cheapest node path", "straight through the singularity")
+    assert sum(row.work for row in attempts(OPTIONS.alternatives) if row.name in end.tried) <= 2.0
+    assert [name for name in names if name in end.tried] == list(end.tried)
+    assert len(asked) == 1
+    monkeypatch.setattr(strategies, "BUDGET", 1e9)
+    assert len(search(given, replace(begun(given), cheapest=NONE)).tried) > len(end.tried)
 
 
 @pytest.fixture
@@ -109,7 +124,7 @@ def test_a_long_flight_is_not_searched_widely(asked: list[Query], monkeypatch: p
         return NONE
 
     monkeypatch.setattr(strategies, "searched", none)
-    for seconds, count in ((2.0, 3), (strategies.WIDE_SECONDS + 1.0, 1)):
+    for seconds, count in ((2.0, 3), (WIDE_SECONDS + 1.0, 1)):
         breadths.clear()
         given = task(seconds=seconds)
         run(given, begun(given))
