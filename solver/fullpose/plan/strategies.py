@@ -40,7 +40,7 @@ from fullpose.trajectory.options import PlanOptions
 from fullpose.trajectory.shortest_path import Avoid, NodePath
 from fullpose.trajectory.windows import Path, smooth_curve, stage_samples
 
-BUDGET = 24.0  # times the work of the first attempt, or so, that all may take: see `Attempt.work`
+BUDGET = 32.0  # times the work of the first attempt, or so, that all may take: see `Attempt.work`
 
 
 Step = Callable[[Task, State], State]
@@ -212,6 +212,20 @@ ATTEMPTS = (
         nimble_and_brief,
         in_the_plane(PlaneBreadth(1000, 1.0, 1.0, frame=INNER)),
         3.0,
+    ),
+    Attempt(
+        2,
+        "plane of time and outer angle, finer",
+        slow_outer,
+        in_the_plane(PlaneBreadth(4000, 0.7, 0.7, frame=OUTER)),
+        8.0,
+    ),
+    Attempt(
+        2,
+        "plane of time and middle angle, finer",
+        slow_middle,
+        in_the_plane(PlaneBreadth(4000, 0.7, 0.7, frame=MIDDLE)),
+        8.0,
     ),
     Attempt(2, "plane, slow frames lead", slow, in_the_plane(PlaneBreadth(4000, 2.0, 2.0, slow_lead=True)), 7.0),
     Attempt(2, "plane, slow frames lead, finer", slow, in_the_plane(PlaneBreadth(4000, 1.0, 1.0, slow_lead=True)), 8.0),

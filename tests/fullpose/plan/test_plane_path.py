@@ -74,9 +74,8 @@ def gated_flight(geometry: Geometry, frame: int) -> tuple[Rig, np.ndarray, np.nd
     return rig, t, np.stack([0.7 * np.sin(1.2 * t), outer, middle, 40.0 * DEG * np.sin(1.7 * t)], axis=1)
 
 
-@pytest.mark.parametrize(
-    ("geometry", "frame"), [(GEOMETRIES[0], OUTER), (GEOMETRIES[1], OUTER), (GEOMETRIES[0], MIDDLE)]
-)
+@pytest.mark.parametrize("geometry", GEOMETRIES)
+@pytest.mark.parametrize("frame", [OUTER, MIDDLE])
 def test_a_flight_with_a_slow_outer_or_middle_frame_is_flown(geometry: Geometry, frame: int) -> None:
     rig, t, x = gated_flight(geometry, frame)
     assert_flown_exactly(t, x, rig)
