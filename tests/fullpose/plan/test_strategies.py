@@ -11,7 +11,7 @@ from fullpose.plan import PlanOptions, strategies
 from fullpose.plan.fallback import Fallback
 from fullpose.plan.node_paths import NONE, Query
 from fullpose.plan.refinement import Task, how_far
-from fullpose.plan.search_state import WIDE_SECONDS, State
+from fullpose.plan.search_state import WIDE_SECONDS, State, slow, slow_base, slow_middle, slow_outer
 from fullpose.plan.strategies import FARTHER, LAST, attempts, first_look, search
 from fullpose.rig import builtin_rigs
 from fullpose.scenarios import random_flight
@@ -66,6 +66,13 @@ def test_the_budget_ends_a_search_and_what_was_tried_is_told(
     assert len(asked) == 1
     monkeypatch.setattr(strategies, "BUDGET", 1e9)
     assert len(search(given, replace(begun(given), cheapest=NONE)).tried) > len(end.tried)
+
+
+def test_where_no_frame_is_slow_the_budget_leaves_nothing_out() -> None:
+    rows = [
+        row for row in attempts(OPTIONS.alternatives) if row.applies not in (slow, slow_base, slow_outer, slow_middle)
+    ]
+    assert sum(row.work for row in rows) <= strategies.BUDGET
 
 
 @pytest.fixture
