@@ -198,9 +198,8 @@ def check(time: Array, attitude: Array, angles: Array, rig: Rig) -> Check:
 
 
 def _rests(decided_by: Decision, closed: Blocking | None, tried: tuple[str, ...]) -> str:
-    words = HOW_SURE[decided_by].format(closed=math.nan if closed is None else closed.time)
-    evidence = tried and CERTAINTY[decided_by] is Certainty.EVIDENCE
-    return f"{words} Tried: {', '.join(tried)}." if evidence else words
+    told = f" Tried: {', '.join(tried)}." if tried and CERTAINTY[decided_by] is Certainty.EVIDENCE else ""
+    return HOW_SURE[decided_by].format(closed=math.nan if closed is None else closed.time) + told
 
 
 def verdict_on(

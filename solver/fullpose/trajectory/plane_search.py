@@ -51,7 +51,7 @@ def empty_states(width: int) -> States:
 
 
 @inlined
-def over(share: float) -> float:
+def dearness(share: float) -> float:
     """How dear a share of a limit is."""
     return math.log(share / SOFT) if share > SOFT else 0.0
 
@@ -64,10 +64,10 @@ def sample_cost(plane: Plane, before: Array, here: Array, there: Array, past: fl
     effort = 0.0
     for i in range(4):
         rate = (there[i] - here[i]) / ahead
-        beyond += over(abs(rate) / table[RATE, i])
+        beyond += dearness(abs(rate) / table[RATE, i])
         if past > 0.0:
             share = abs(rate - (here[i] - before[i]) / past) / (0.5 * (past + ahead) * table[ACCELERATION, i])
-            beyond += over(share)
+            beyond += dearness(share)
             effort += min(share * share, 1.0)
         outside = max(table[MIN, i] - there[i], there[i] - table[MAX, i])
         if outside > 0.0:
