@@ -30,7 +30,7 @@ for rig_name in ("vertical-4", "horizontal-4"):
     check = verify(flight.time, solution.angles, rig, attitude)
     print(f"{path.stem} on {rig_name}: {len(flight.time)} samples in {solution.solve_time:.2f} s")
     print(f"  largest error {np.degrees(check.max_error):.1e} deg, matrix error {check.max_matrix_error:.1e}")
-    for frame, (position, rate, acceleration) in zip(FRAMES, np.degrees(check.peaks), strict=True):
+    for frame, (position, rate, acceleration, _jerk) in zip(FRAMES, np.degrees(check.peaks), strict=True):
         print(f"  {frame:6s} up to {position:6.1f} deg, {rate:6.1f} deg/s, {acceleration:7.1f} deg/s^2")
     if solution.limited_samples:
         codes, counts = np.unique(solution.limited[solution.limited > 0], return_counts=True)

