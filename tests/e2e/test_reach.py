@@ -44,8 +44,10 @@ SMALL_TARGETS = """(least) => [...document.querySelectorAll(
     return [`${each.tagName}.${each.className} "${each.textContent.trim().slice(0, 30)}" ${box.width}x${box.height}`];
   })"""
 
-# Texts that lie over each other: the boxes of their lines, seen and not of one another's element.
+# Texts that lie over each other: the boxes of their lines, seen and not of one another's element. What a dialog covers
+# in part is no overprint.
 OVERPRINTS = """() => {
+  const LAYER = "[role=dialog]";
   const seen = [];
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
@@ -70,7 +72,7 @@ OVERPRINTS = """() => {
   const found = [];
   for (let i = 0; i < seen.length; i++) for (let j = i + 1; j < seen.length; j++) {
     const [a, b] = [seen[i], seen[j]];
-    if (a.owner === b.owner) continue;
+    if (a.owner === b.owner || a.owner.closest(LAYER) !== b.owner.closest(LAYER)) continue;
     const wide = Math.min(a.right, b.right) - Math.max(a.left, b.left);
     const high = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
     if (wide > 2 && high > 4) found.push(`"${a.text}" over "${b.text}"`);
