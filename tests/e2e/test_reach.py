@@ -47,7 +47,7 @@ SMALL_TARGETS = """(least) => [...document.querySelectorAll(
 # Texts that lie over each other: the boxes of their lines, seen and not of one another's element. What a dialog covers
 # in part is no overprint.
 OVERPRINTS = """() => {
-  const LAYER = "[role=dialog]";
+  const LAYER = "dialog, [role=dialog]";
   const seen = [];
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
