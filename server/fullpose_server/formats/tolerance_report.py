@@ -77,7 +77,7 @@ def statement(smoothed: Smoothed) -> str:
 
 
 def _enough(report: dict[str, Any]) -> float | None:
-    """The least tolerance [deg] of a flight that is refused, with a hair more, in three digits; None: none is known."""
+    """The least tolerance [deg] of a flight that is refused, with a hair more, in two digits; None: none is known."""
     least = report.get("verdict", {}).get("least_tolerance_deg")
     if report.get("feasible") or not least or least * HAIR > WIDEST_DEG:
         return None
