@@ -15,10 +15,11 @@ import numpy as np
 import pytest
 from mcap.stream_reader import StreamReader
 
-from fullpose_server.runtime.recording.mcap_reader import read_events
+from fullpose_server.runtime.recording.mcap_reader import is_complete, read_events
 from fullpose_server.session.machine import SilencePolicy
 from tests.faults.records import messages
 from tests.fullpose_server.runtime.rigs import codes_of, config_of, hosted, plan_of, within_limits, written
+from tests.support.waiting import soon
 
 CAMPAIGN = "FAULT_ROUNDS" in os.environ
 MOMENTS = int(os.environ.get("FAULT_ROUNDS", "3"))
@@ -226,10 +227,10 @@ def test_stream_reader_is_the_library_s(tmp_path: Path) -> None:
             await operator.must("start")
             await operator.until("running")
             await operator.until("armed")
-            await asyncio.sleep(0.3)
+            await soon(lambda: any(map(is_complete, (tmp_path / "runs").glob("*.mcap"))))
 
     asyncio.run(fly())
-    (record,) = (tmp_path / "runs").iterdir()
+    (record,) = (tmp_path / "runs").glob("*.mcap")
     with record.open("rb") as file:
         whole = [r.sequence for r in StreamReader(file).records if isinstance(r, Message) and r.channel_id == 1]
     assert messages(record) == whole
