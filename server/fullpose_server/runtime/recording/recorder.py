@@ -47,6 +47,7 @@ class Recorder:
         self._record: RunRecord | None = None
         self._next = shared.ring.head  # last sequence that was taken
         self._events = int(self._header["recorder_event"][0])
+        self._header["recorder_run"] = b""  # what one before us was killed over is not ours to go on with
         self._until: int | None = None  # last sequence of a run that has ended
         self._alarm_ns: int | None = None  # of an incident: when its last alarm came
         self._cut_at = self._statistics_at = self._space_at = 0.0

@@ -103,6 +103,17 @@ def test_a_run_that_is_followed_at_once_keeps_its_end(rig: Rig, looks: bool) -> 
     assert rig.shared.header["recorder_lost"][0] == 0
 
 
+def test_one_that_follows_a_killed_one_does_not_say_that_it_records_that_run(rig: Rig) -> None:
+    rig.begin("a")
+    rig.look()
+    assert rig.shared.header["recorder_run"][0] == b"a"
+    rig.recorder = Recorder(rig.shared, rig.runs)
+    assert rig.shared.header["recorder_run"][0] == b""
+    rig.begin("b")
+    rig.look()
+    assert rig.shared.header["recorder_run"][0] == b"b"
+
+
 def test_what_was_lost_stays_counted_when_another_run_begins(rig: Rig) -> None:
     rig.begin("a")
     rig.look()
