@@ -85,6 +85,7 @@ class Round:
     def run(self) -> None:
         """Bring the rig to its state, do it, and look at what is left."""
         lab = self._lab
+        lab.serve()  # a round that failed may have left none
         before = lab.records()
         lab.bring(self.state)
         time.sleep(self._moment_s)

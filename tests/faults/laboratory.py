@@ -103,8 +103,14 @@ class Laboratory:
             self._reaped()
             self.process = start("serve", "--port", self.port, "--data-dir", self.data, **self.env)
             assert self.process.stdout is not None
-            self.process.stdout.readline()
+            if not self.process.stdout.readline():
+                raise AssertionError(f"the server did not start: {self._said()}")
         until(self.healthy, every_s=0.1)
+
+    def _said(self) -> str:
+        """The last of what a server that has ended wrote to stderr."""
+        assert self.process is not None
+        return self.process.communicate(timeout=60)[1][-2000:]
 
     def _reaped(self) -> None:
         """Wait for the server's end; what it had started may hold the other ends of its pipes for a while longer."""

@@ -3,6 +3,9 @@
 import asyncio
 import socket
 
+import pytest
+
+from fullpose_server.cli import _serving
 from fullpose_server.cli._serving import address, bind
 
 
@@ -37,3 +40,24 @@ def test_addresses_are_links() -> None:
     for host, text in (("127.0.0.1", "http://127.0.0.1:"), ("0.0.0.0", "http://localhost:"), ("::1", "http://[::1]:")):
         with bind(host, 0) as listener:
             assert address(listener).startswith(text)
+
+
+def test_a_port_that_becomes_free_is_waited_for(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What a killed server had started holds it for a moment."""
+    holder = bind("127.0.0.1", 0)
+    port = holder.getsockname()[1]
+    monkeypatch.setattr(_serving.time, "sleep", lambda _: holder.close())
+    with bind("127.0.0.1", port) as listener:
+        assert listener.getsockname()[1] == port
+    assert f"port {port} on 127.0.0.1 is in use: waiting" in capsys.readouterr().err
+
+
+def test_one_that_stays_in_use_is_refused_in_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(_serving, "FREE_S", 0.0)
+    with bind("127.0.0.1", 0) as holder, pytest.raises(SystemExit):
+        bind("127.0.0.1", holder.getsockname()[1])
+    assert "is in use by another program: stop it, or choose another with --port" in capsys.readouterr().err

@@ -2,13 +2,15 @@
 
 import errno
 import socket
+import time
 from collections.abc import Awaitable, Callable
 
-from fullpose_server.cli._exit import fail
+from fullpose_server.cli._exit import fail, say
 from fullpose_server.logs import configure
 from fullpose_server.settings import Settings
 
 BACKLOG = 512
+FREE_S = 5.0  # the gate that a killed server had just started holds the port until it has begun and finds itself alone
 UNSENT = 16_384  # bytes the system may hold unsent for a client; what is older than that would only make it late
 Ready = Callable[[str], Awaitable[None]]
 
@@ -32,14 +34,29 @@ def bind(host: str, port: int) -> socket.socket:
     if hasattr(socket, "TCP_NOTSENT_LOWAT"):
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT)  # accepted sockets inherit it
     try:
-        listener.bind((host.strip("[]"), port))
+        _bind(listener, host.strip("[]"), port)
+        listener.listen(BACKLOG)
     except OSError as error:
         listener.close()
         if error.errno == errno.EADDRINUSE:
             fail(f"port {port} on {host} is in use by another program: stop it, or choose another with --port")
         fail(f"cannot listen on {host} port {port}: {error.strerror or error}")
-    listener.listen(BACKLOG)
     return listener
+
+
+def _bind(listener: socket.socket, host: str, port: int) -> None:
+    until, told = time.monotonic() + FREE_S, False
+    while True:
+        try:
+            listener.bind((host, port))
+            return
+        except OSError as error:
+            if error.errno != errno.EADDRINUSE or time.monotonic() > until:
+                raise
+        if not told:
+            told = True
+            say(f"port {port} on {host} is in use: waiting {FREE_S:g} s for it")
+        time.sleep(0.05)
 
 
 def address(listener: socket.socket) -> str:
