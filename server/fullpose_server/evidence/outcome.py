@@ -17,8 +17,8 @@ from fullpose_server.runtime.recording.run_summary import RunSummary
 from fullpose_server.session.run_end import RunEnd
 
 POSITION_SLACK_DEG = 1e-9
-RELATIVE_SLACK = 1e-6  # of a rate or acceleration, as the guard has it
-_ROUNDING = 16.0 * 2.22e-16 * 180.0  # [deg] of a position, which rates and accelerations see through differences
+RELATIVE_SLACK = 1e-6  # of a rate, acceleration or jerk, as the guard has it
+_ROUNDING = 16.0 * 2.22e-16 * 180.0  # [deg] of a position, which rates, accelerations and jerks see through differences
 _ENDED = {
     RunEnd.COMPLETED: "Flown to its end",
     RunEnd.STOPPED: "Stopped by command",
@@ -107,8 +107,9 @@ def _peaks(rows: Samples, index: int) -> FramePeaks:
 def _exceeded(rows: Samples, time_s: Array, index: int, rig: Rig) -> list[Exceeded]:
     limits = rig.frames[index]
     rate_hz = 1e9 / float(np.median(np.diff(rows["time_ns"]))) if len(rows) > 1 else 1.0
-    low, high, most_rate, most_acceleration = (
-        math.degrees(each) for each in (limits.min, limits.max, limits.max_rate, limits.max_acceleration)
+    low, high, most_rate, most_acceleration, most_jerk = (
+        math.degrees(each)
+        for each in (limits.min, limits.max, limits.max_rate, limits.max_acceleration, limits.max_jerk)
     )
     position, rate, acceleration = (
         np.nan_to_num(rows[name][:, index]) for name in ("demand", "demand_rate", "demand_acceleration")
@@ -124,6 +125,12 @@ def _exceeded(rows: Samples, time_s: Array, index: int, rig: Rig) -> list[Exceed
             most_acceleration,
             RELATIVE_SLACK * most_acceleration + _ROUNDING * rate_hz**2,
         ),
+        (
+            "max_jerk_deg_s3",
+            np.abs(_jerk(rows, acceleration, rate_hz)),
+            most_jerk,
+            RELATIVE_SLACK * most_jerk + _ROUNDING * rate_hz**3,
+        ),
     ):
         beyond = values > allowed + slack
         if beyond.any():
@@ -132,6 +139,13 @@ def _exceeded(rows: Samples, time_s: Array, index: int, rig: Rig) -> list[Exceed
             told = sign * float(values[at]), sign * allowed
             found.append(Exceeded(FRAMES[index].value, name, *told, float(time_s[at]), int(beyond.sum())))
     return found
+
+
+def _jerk(rows: Samples, acceleration: Array, rate_hz: float) -> Array:
+    """Of one frame [deg/s^3], from the sample before each; 0 where that is missing or was not driven."""
+    follows = np.diff(rows["seq"].astype(np.int64), prepend=rows["seq"][:1].astype(np.int64)) == 1
+    changes: Array = np.where(follows, np.diff(acceleration, prepend=acceleration[:1]) * rate_hz, 0.0)
+    return changes
 
 
 def _sentence(run: RunSummary, kept: bool | None, exceeded: tuple[Exceeded, ...]) -> str:

@@ -41,9 +41,13 @@ def flight_of(seed: int, name: str, seconds: float = 4.0, hz: float = 250.0, spe
     return t, F, d
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("name", ["vertical-4", "vertical-limited", "horizontal-4"])
-def test_a_plan_keeps_the_limit_that_a_path_is_known_to_keep(seed: int, name: str) -> None:
+REFUSED = pytest.mark.xfail(strict=True, reason="flyable by construction, and refused: decision 0055")
+KNOWN = [(name, seed) for seed in range(4) for name in ("vertical-4", "vertical-limited", "horizontal-4")]
+KNOWN.remove(("vertical-4", 3))
+
+
+@pytest.mark.parametrize(("name", "seed"), [*KNOWN, pytest.param("vertical-4", 3, marks=REFUSED)])
+def test_a_plan_keeps_the_limit_that_a_path_is_known_to_keep(name: str, seed: int) -> None:
     t, C, d = flight_of(seed, name)
     most = float(third_differences(d, 250.0).max())
     rig = with_jerk(builtin_rigs()[name], 1.25 * most)
