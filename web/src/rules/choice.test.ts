@@ -18,6 +18,7 @@ const now = (given: Partial<Circumstances>): Circumstances => ({
   unacknowledged: 0,
   busy: false,
   otherwise: null,
+  holdable: true,
   ...given,
 });
 

@@ -13,6 +13,7 @@ const ARMED: Circumstances = {
   unacknowledged: 0,
   busy: false,
   otherwise: null,
+  holdable: true,
 };
 const NOTHING: Circumstances = {
   role: "viewer",
@@ -24,6 +25,7 @@ const NOTHING: Circumstances = {
   unacknowledged: 3,
   busy: true,
   otherwise: "another is loaded",
+  holdable: false,
 };
 
 const enabled = (command: CommandName, now: Partial<Circumstances>): boolean =>
@@ -60,6 +62,14 @@ describe("a command", () => {
 
   it("that holds waits for none", () => {
     expect(enabled("hold", { busy: true })).toBe(true);
+  });
+
+  it("that holds is off for a rig whose jerk limits a hold would not keep, and says what to do", () => {
+    expect(verdict("hold", { ...ARMED, holdable: false })).toEqual({
+      enabled: false,
+      why: "A rig with jerk limits is not held on its path: stop it (Esc)",
+    });
+    expect(enabled("start", { holdable: false })).toBe(true);
   });
 
   it("that sets the rig in motion has no key", () => {

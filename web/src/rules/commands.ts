@@ -48,6 +48,8 @@ export interface Circumstances {
   busy: boolean;
   /** Why what is loaded is not to be started: it is not what is chosen; null where it is. */
   otherwise: string | null;
+  /** Whether a hold on the path would keep the rig's limits: not where it limits jerk. */
+  holdable: boolean;
 }
 
 export type Verdict = { enabled: true } | { enabled: false; why: string };
@@ -69,6 +71,7 @@ export function verdict(command: CommandName, now: Circumstances): Verdict {
     return no("Data is stale: motion is disabled");
   if (!now.leased) return no("Take control first");
   if ((command === "start" || command === "go_live") && now.otherwise !== null) return no(now.otherwise);
+  if (command === "hold" && !now.holdable) return no("A rig with jerk limits is not held on its path: stop it (Esc)");
   if (command === "load" && !now.plan) return no("Choose a plan first");
   if (command === "acknowledge" && now.unacknowledged === 0) return no("No alarm waits");
   if (command === "reset" && now.unacknowledged > 0) return no("Acknowledge the alarms first");

@@ -12,6 +12,7 @@ const NOW: Circumstances = {
   unacknowledged: 0,
   busy: false,
   otherwise: null,
+  holdable: true,
 };
 const offered = (now: Partial<Circumstances> = {}) =>
   paletteOf({
