@@ -48,11 +48,19 @@ def test_a_demo_without_real_time_rights_flies_and_its_health_says_what_is_lost(
             told = health["realtime"]
             assert told.startswith("off: SCHED_FIFO refused")
             assert "the loop's profile is lenient: a tick may be 1000 ms late (else 50)" in told
-            rig = health["rig_pid"]
-            os.kill(rig, signal.SIGSTOP)
-            time.sleep(0.3)  # a strict profile, or the table's own watchdog, would have braked
-            os.kill(rig, signal.SIGCONT)
-            until(lambda: any(alarm["code"] == "lateness" for alarm in session()["history"]))
-            stalled = session()
-        assert stalled["state"] == "running"
-        assert {alarm["severity"] for alarm in stalled["history"]} == {"warning"}
+
+            def counted(**which: str) -> int:
+                alarms = session()["history"]
+                return sum(a["count"] for a in alarms if all(a[key] == value for key, value in which.items()))
+
+            def stalled() -> bool:
+                """Whether the rig flew on; a starved machine may make it later than that, and the demo begins anew."""
+                until(lambda: session()["state"] == "running")
+                late, faults = counted(code="lateness", severity="warning"), counted(severity="fault")
+                os.kill(health["rig_pid"], signal.SIGSTOP)
+                time.sleep(0.3)  # a strict profile, or the table's own watchdog, would have braked
+                os.kill(health["rig_pid"], signal.SIGCONT)
+                until(lambda: counted(code="lateness", severity="warning") > late or counted(severity="fault") > faults)
+                return session()["state"] == "running" and counted(severity="fault") == faults
+
+            assert any(stalled() for _ in range(5))

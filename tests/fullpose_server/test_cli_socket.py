@@ -51,7 +51,7 @@ def test_a_port_that_becomes_free_is_waited_for(
     monkeypatch.setattr(_serving.time, "sleep", lambda _: holder.close())
     with bind("127.0.0.1", port) as listener:
         assert listener.getsockname()[1] == port
-    assert f"port {port} on 127.0.0.1 is in use: waiting" in capsys.readouterr().err
+    assert f"port {port} on 127.0.0.1 was in use: waited" in capsys.readouterr().err
 
 
 def test_one_that_stays_in_use_is_refused_in_one_line(
@@ -60,4 +60,4 @@ def test_one_that_stays_in_use_is_refused_in_one_line(
     monkeypatch.setattr(_serving, "FREE_S", 0.0)
     with bind("127.0.0.1", 0) as holder, pytest.raises(SystemExit):
         bind("127.0.0.1", holder.getsockname()[1])
-    assert "is in use by another program: stop it, or choose another with --port" in capsys.readouterr().err
+    assert " is in use by another program: stop it, or choose another with --port" in capsys.readouterr().err

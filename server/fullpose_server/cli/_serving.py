@@ -45,18 +45,18 @@ def bind(host: str, port: int) -> socket.socket:
 
 
 def _bind(listener: socket.socket, host: str, port: int) -> None:
-    until, told = time.monotonic() + FREE_S, False
+    began, waited = time.monotonic(), False
     while True:
         try:
             listener.bind((host, port))
-            return
+            break
         except OSError as error:
-            if error.errno != errno.EADDRINUSE or time.monotonic() > until:
+            if error.errno != errno.EADDRINUSE or time.monotonic() - began > FREE_S:
                 raise
-        if not told:
-            told = True
-            say(f"port {port} on {host} is in use: waiting {FREE_S:g} s for it")
+        waited = True
         time.sleep(0.05)
+    if waited:
+        say(f"port {port} on {host} was in use: waited {time.monotonic() - began:.1f} s for it")
 
 
 def address(listener: socket.socket) -> str:
