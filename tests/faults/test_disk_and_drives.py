@@ -25,6 +25,7 @@ from tests.fullpose_server.drives.relay import Relay, relay
 from tests.fullpose_server.drives.tables import emulator
 from tests.fullpose_server.runtime.rigs import PATIENT, config_of, hosted, plan_of, ticked, within_limits, written
 from tests.support.disks import small_disk
+from tests.support.waiting import until
 
 
 def test_a_disk_that_fills_up_in_flight_costs_the_record_and_not_the_flight(tmp_path: Path) -> None:
@@ -101,8 +102,8 @@ def test_a_failing_drive_is_named_and_the_rig_brakes(
                     moving[["base", "outer", "middle", "inner"].index(frame)] = 0.0  # its brake is what failed
                 assert moving.max() < 1.0
         (record,) = (tmp_path / "runs").iterdir()
+        until(lambda: is_complete(record))  # the recorder ends after the rig's process
         assert code in [e.get("code") for e in read_events(record) if e["kind"] == "alarm"]
-        assert is_complete(record)
 
     asyncio.run(fly())
 

@@ -100,7 +100,7 @@ def test_a_planner_that_dies_is_told_and_costs_foresight_alone(tmp_path: Path) -
                 await operator.must(word)
             assert planners(rig) == []
             await operator.must("load", live={"method": "preview"})
-            assert len(planners(rig)) == 1
+            await soon(lambda: len(planners(rig)) == 1)
             await operator.must("unload")
             assert planners(rig) == []
 
