@@ -30,10 +30,14 @@ export interface Margin {
   text: string;
 }
 
-/** The limits that are told of a rig: jerk, which few rigs limit, only where a frame does. */
+/** Whether a frame of it has a jerk limit; few rigs do. */
+export function limitsJerk(rig: Rig | undefined): boolean {
+  return framesOf(rig).some(({ limits }) => limits.max_jerk_deg_s3 !== null);
+}
+
+/** The limits that are told of a rig: jerk only where a frame limits it. */
 export function limitsTold(rig: Rig | undefined): readonly LimitName[] {
-  const jerks = framesOf(rig).some(({ limits }) => limits.max_jerk_deg_s3 !== null);
-  return jerks ? LIMITS : LIMITS.filter((limit) => limit !== "jerk");
+  return limitsJerk(rig) ? LIMITS : LIMITS.filter((limit) => limit !== "jerk");
 }
 
 /** What a limit is counted in: half of a range of positions, the limit itself otherwise; null for none. */

@@ -1,6 +1,6 @@
 /** What the command rules are asked about, gathered from the rig and the library. */
 import { otherwise } from "../rules/choice";
-import { limitsTold } from "../rules/margins";
+import { limitsJerk } from "../rules/margins";
 import type { Circumstances } from "../rules/commands";
 import type { Library } from "./library.svelte";
 import type { Identity } from "./identity.svelte";
@@ -20,7 +20,7 @@ export class Gathered {
       unacknowledged: operated.unacknowledged,
       busy: operated.busy,
       otherwise: otherwise(operated.session?.plan ?? null, library.chosen),
-      holdable: !limitsTold(library.rigs.find(({ name }) => name === operated.name)).includes("jerk"),
+      holdable: !limitsJerk(library.rigs.find(({ name }) => name === operated.name)),
     });
   }
 }
